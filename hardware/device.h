@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file
+/// The device layer: life cycle and narrow kinds.  Drivers live under hardware/drivers; nothing above this
+/// room knows which one it talks to.  What each state allows is in docs/architecture.md.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "core/latest_value.h"
+#include "core/motion.h"
+#include "core/result.h"
+
+namespace longarm::hardware {
+
+enum class DeviceState { kClosed, kOpening, kIdle, kActive, kFault };
+const char* toString(DeviceState state);
+
+/// Life cycle common to all.  Every method may be called from any thread; errors come back as values.
+class Device {
+ public:
+  virtual ~Device() = default;
+  virtual std::string name() const = 0;
+  virtual DeviceState state() const = 0;
+  /// Why it is in kFault, or the last retryable error; empty if none.
+  virtual std::string message() const = 0;
+  virtual Status open() = 0;             ///< Idempotent; returns at once, state goes kOpening then kIdle.
+  virtual void close() noexcept = 0;     ///< Idempotent; stops first.
+  virtual Status activate() = 0;         ///< kIdle -> kActive; kRefused in any other state.
+  virtual void deactivate() noexcept = 0;
+  /// Stops whatever it does, any state, any thread, no waiting for queued commands.
+  virtual void stop() noexcept = 0;
+  virtual Status clearFault() = 0;       ///< kFault -> kIdle; an explicit act of the operator.
+};
+
+class RobotArm : public virtual Device {
+ public:
+  /// Newest measured joints of the whole robot; null before the first.
+  virtual std::shared_ptr<const JointState> jointState() const = 0;
+  /// Joint state at a time on the console's clock, interpolated from the last seconds; kStale outside them.
+  virtual Result<JointState> jointStateAt(double stamp_s) const = 0;
+  /// Streams one horizon.  Called by MotionGate only.  kRefused unless kActive.
+  virtual Status send(const Horizon& horizon) = 0;
+};
+
+class Gripper : public virtual Device {
+ public:
+  virtual Status setOpening(double position) = 0;        ///< Joint position [m or rad]
+  virtual double position() const = 0;
+  virtual bool holding() const = 0;                      ///< Closed on something.
+};
+
+class PanTilt : public virtual Device {
+ public:
+  virtual Status moveTo(double pan, double tilt) = 0;    ///< [rad]
+  virtual double pan() const = 0;
+  virtual double tilt() const = 0;
+  virtual bool moving() const = 0;
+};
+
+/// One decoded-or-not picture with its time of exposure.
+struct Frame {
+  std::string camera;
+  double stamp_s = 0;                    ///< Exposure, on the console's monotonic clock [s].
+  double received_s = 0;
+  std::uint64_t sequence = 0;
+  std::string format;                    ///< "jpeg" or "png".
+  std::string data;                      ///< Encoded bytes.
+};
+
+class Camera : public virtual Device {
+ public:
+  virtual std::shared_ptr<const Frame> latestFrame() const = 0;   ///< Null before the first.
+  virtual Status setZoom(double /*zoom01*/) { return {ErrorCode::kRefused, name() + ": this camera has no zoom"}; }
+};
+
+}  // namespace longarm::hardware

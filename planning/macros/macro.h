@@ -1,0 +1,37 @@
+#pragma once
+
+/// @file
+/// Macros: what can be done with a selected feature.  One file each; the registry lists them.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/motion/plan.h"
+#include "vision/sketch/feature.h"
+
+namespace longarm::planning {
+
+struct MacroInfo {
+  std::string name;                               ///< "grab_pipe": stable, lower case.
+  std::string title;                              ///< "Grab Pipe"
+  std::string description;                        ///< One sentence for a tooltip.
+  std::optional<vision::FeatureKind> takes;       ///< Empty: available when nothing is selected.
+};
+
+class Macro {
+ public:
+  virtual ~Macro() = default;
+  virtual MacroInfo info() const = 0;
+  /// Plans; never throws, answers within context.budget_s, honours context.cancel within 100 ms.
+  /// @pre feature is given exactly when info().takes is.
+  virtual Plan plan(const PlanContext& context, const vision::Feature* feature) const = 0;
+};
+
+/// All macros of a workcell: the canned poses it names, then those for features.
+std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell);
+/// Null if there is none of that name.
+const Macro* findMacro(const std::vector<std::unique_ptr<Macro>>& macros, const std::string& name);
+
+}  // namespace longarm::planning

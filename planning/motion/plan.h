@@ -1,0 +1,67 @@
+#pragma once
+
+/// @file
+/// Plans: what a macro produces, and why it could not.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/cancel.h"
+#include "core/motion.h"
+#include "core/pose.h"
+#include "core/result.h"
+#include "planning/world/shape.h"
+#include "planning/world/workcell.h"
+
+namespace longarm::planning {
+
+/// The whole list of reasons a plan can end with; stable words in files and JSON.
+enum class PlanStatus {
+  kOk, kBadFeature, kUnreachable, kStartInCollision, kGoalInCollision, kApproachBlocked, kNoPath,
+  kLimits, kTimeout, kCancelled
+};
+const char* toString(PlanStatus status);          ///< "ok", "bad_feature", "unreachable", ...
+
+/// One named piece of a plan ("transit", "approach", "act", "retreat").
+struct PlanStage {
+  std::string name;
+  double start_s = 0, end_s = 0;                  ///< Interval of the trajectory.
+  bool straight = false;                          ///< Cartesian line of the tool.
+};
+
+struct Plan {
+  PlanStatus status = PlanStatus::kNoPath;
+  std::string reason;                             ///< A sentence; empty when ok.
+  std::string macro;
+  int failed_waypoint = -1;
+  std::optional<Pose> failed_pose;                ///< X_root_tip that was refused, to mark in the scene.
+  Trajectory trajectory;                          ///< Of the arm's joints; empty unless ok.
+  std::vector<PlanStage> stages;
+  Eigen::VectorXd start_configuration;            ///< Full q the plan was made for.
+  Pose goal = Pose::Identity();                   ///< X_root_tip at the end.
+  double planning_seconds = 0;
+  double min_clearance = 0;                       ///< [m]
+  double max_velocity_ratio = 0, max_acceleration_ratio = 0;   ///< Of the workcell's limits, 0 ... 1.
+  std::string go = "go";                          ///< "go", "ask", "no_go": feature accuracy against the macro's need.
+  std::string accuracy_note;                      ///< Why it is not "go".
+  std::vector<std::string> notes;                 ///< Things the operator should know.
+
+  bool ok() const { return status == PlanStatus::kOk; }
+};
+
+/// Everything a plan depends on.  Values and borrowed constants; thread-compatible.
+struct PlanContext {
+  const Workcell* workcell = nullptr;
+  std::vector<WorldObject> objects;               ///< Beyond the workcell's own.
+  Eigen::VectorXd start;                          ///< Full configuration q.
+  unsigned seed = 1;
+  double budget_s = 5;
+  CancelToken cancel;
+  std::function<void(double, const std::string&)> progress;   ///< (0..1, what); may be empty; any thread.
+};
+
+}  // namespace longarm::planning

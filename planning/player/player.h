@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file
+/// The VCR: plays a trajectory forwards and backwards at any speed, always one horizon from rest.
+
+#include <memory>
+#include <string>
+
+#include "core/motion.h"
+#include "core/result.h"
+
+namespace longarm::planning {
+
+struct PlayerOptions {
+  double horizon_s = 0.3;                ///< Length of each horizon; every one ends at rest on the path.
+  double point_spacing_s = 0.02;
+};
+
+enum class PlayerState { kEmpty, kReady, kPlaying, kPausing, kPaused, kDone, kHalted };
+
+/// Path parameter tau runs over [0, duration]; its rate follows the wanted speed within the limits.  Pure logic:
+/// the caller supplies time.  Thread-compatible (owned by the motion thread).
+class Player {
+ public:
+  explicit Player(MotionLimits limits, PlayerOptions options = {});
+  ~Player();
+  /// Loads a trajectory, cursor at 0, state kReady.  Fails as validate(), or kOutOfLimits.
+  Status load(const Trajectory& trajectory);
+  void clear();
+
+  void play();                           ///< Towards the end at the set speed (sign of speed decides the way).
+  void pause();                          ///< Decelerates along the path within the planned limits.
+  /// Wanted speed factor, -2 ... 2 (clamped); takes effect in motion.
+  void setSpeed(double factor);
+  /// Moves the cursor while not moving (preview only; never moves the robot).  @returns kRefused while playing.
+  Status scrub(double tau);
+  void halt();                           ///< STOP was pressed or a fault came: nothing moves until load() or resumeFrom().
+  /// After a halt: re-attaches to the path at the measured joints if they lie within `tolerance` [rad] of it.
+  Status resumeFrom(const Eigen::VectorXd& measured, double tolerance = 0.01);
+
+  PlayerState state() const;
+  double cursor() const;                 ///< tau [s]
+  double rate() const;                   ///< d tau / dt now.
+  double duration() const;
+  const Trajectory& trajectory() const;
+
+  /// Advances to time `now_s` and returns the horizon to send (empty points when nothing needs to be sent).
+  /// Its first point is the commanded state at now_s; it ends at rest on the path.
+  Horizon tick(double now_s);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace longarm::planning

@@ -1,0 +1,1 @@
+#include "planning/robot/robot_model.h"

@@ -1,0 +1,39 @@
+#pragma once
+
+/// @file
+/// The epipolar curve: where a pick of one view may lie in another, through both lenses.
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/result.h"
+#include "vision/snapshot/view.h"
+
+namespace longarm::vision {
+
+struct EpipolarOptions {
+  double min_depth = 0.15, max_depth = 20;   ///< z in the first camera [m].
+  double max_sag_px = 0.02;                  ///< Chords deviate less than this from the curve.
+};
+
+struct EpipolarPoint {
+  Eigen::Vector2d pixel;     ///< In the second view, raw.
+  double depth = 0;          ///< z in the first camera [m].
+};
+
+/// The visible piece of the curve, from near to far; it lies in the second picture and before both cameras.
+struct EpipolarCurve {
+  std::vector<EpipolarPoint> points;        ///< Empty if no part can be seen.
+  std::vector<EpipolarPoint> ticks;         ///< Round depths for labels, inside the visible piece.
+
+  /// The curve's point nearest to a pixel (depth interpolated in inverse depth), or nothing if empty.
+  std::optional<EpipolarPoint> nearest(const Eigen::Vector2d& pixel) const;
+};
+
+/// @returns kInvalidInput (pixel has no ray, bad depth range, different parents).  Pure function.
+Result<EpipolarCurve> epipolarCurve(const View& from, const Eigen::Vector2d& pixel, const View& to,
+                                    const EpipolarOptions& options = {});
+
+}  // namespace longarm::vision
