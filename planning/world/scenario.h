@@ -1,0 +1,106 @@
+#pragma once
+
+/// @file
+/// The scenario file: the virtual world's truth (objects, light), the robot's hidden imperfections, faults and goals.
+/// The console never reads the truth of a running scenario; the virtual robot and judges do.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/pose.h"
+#include "core/result.h"
+#include "planning/world/shape.h"
+
+namespace longarm::planning {
+
+/// A body of the virtual world, in the world frame (base_link where the robot starts).
+struct ScenarioObject {
+  WorldObject body;
+  std::string surface;                   ///< "wood", "concrete", "metal", "checker", "carton", "noise" or empty: plain.
+  bool graspable = false;                ///< The gripper can close on it (cylinders and boxes).
+};
+
+/// What the console does not know of the robot.  All drawn from a seed where they say "up to".
+struct Imperfections {
+  double joint_offset_deg = 0.1;         ///< Constant error of each arm encoder, uniform up to +- this.
+  double backlash_deg = 0.02;            ///< Full width of the play of each arm joint.
+  double encoder_noise_deg = 0.002;      ///< 1 sigma of each reading.
+  double latency_s = 0.02;               ///< From receiving a command to acting on it.
+  double image_noise = 2;                ///< 1 sigma [grey levels].
+
+  static Imperfections none();           ///< All zero.
+};
+
+/// Something that goes wrong; names are those of cli.md (--faults).
+struct ScenarioFault {
+  std::string name;
+  std::optional<double> at_s;            ///< Simulated time; empty: in the middle of the motion.
+  double duration_s = 0;                 ///< 0: for good.
+  std::string target;                    ///< Camera or joint it strikes; empty: the fault's usual one.
+};
+
+struct ScenarioGoal {
+  std::string kind;                      ///< "grasp", "lift", "touch", "no_contact"
+  std::string object;
+  double amount = 0;                     ///< lift: height above the start [m].
+};
+
+struct ScenarioLight {
+  Eigen::Vector3d direction{-0.35, 0.25, -1};  ///< The way light travels; normalised on use.
+  double intensity = 0.75;                     ///< Of the main light, 0 ... 2.
+  double ambient = 0.45;                       ///< Of a fill light, 0 ... 2.
+};
+
+/// Where a graspable pipe may lie when drawn by a seed.
+struct RandomPipe {
+  std::string object, table;             ///< Names in `objects`; its stands are the objects `stands`.
+  std::vector<std::string> stands, legs;
+  double min_distance = 0.55, max_distance = 0.95;   ///< Of the middle from the base axis [m].
+  double max_bearing = 0.8;              ///< [rad]
+  double min_height = 0.25, max_height = 0.75;       ///< Of the middle [m].
+  double max_slope = 0.05;               ///< [rad]
+  double min_length = 0.2, max_length = 0.5;         ///< [m]
+  double max_turn = 1.5707963267948966;  ///< Of the pipe from square to the line of sight [rad].
+  /// Footprint that table and pipe stay out of: min x, min y, max x, max y [m].
+  Eigen::Vector4d keep_clear{-0.6, -0.35, 0.3, 0.35};
+};
+
+struct Scenario {
+  std::string path;                      ///< File it came from.
+  std::string name, title, description;
+  std::string robot = "longarm_one";     ///< Built-in robot, or absolute path of a workcell file.
+  std::string variant;                   ///< "", "ptz"
+  std::vector<ScenarioObject> objects;
+  ScenarioLight light;
+  std::string ground = "concrete";       ///< Surface of the ground.
+  Imperfections imperfections;
+  std::vector<ScenarioFault> faults;
+  std::vector<ScenarioGoal> goals;
+  std::string start_pose = "look_ahead"; ///< Canned pose of the workcell.
+  std::optional<RandomPipe> random_pipe;
+
+  const ScenarioObject* object(const std::string& name) const;   ///< Null if there is none.
+};
+
+struct ScenarioInfo {
+  std::string name, title, description, path;
+};
+
+/// The built-in scenarios that exist in resources/scenarios, by name.  Files that cannot be read are left out.
+std::vector<ScenarioInfo> listScenarios();
+
+/// @param path_or_name a file (contains '/' or ends in .yaml), or the name of a built-in one.
+/// @returns kNotFound (the message lists the built-in ones), or kInvalidInput naming file, key, value and what was expected.
+Result<Scenario> loadScenario(const std::string& path_or_name);
+/// The same from text; `path` is used in messages and for relative meshes.
+Result<Scenario> parseScenario(const std::string& text, const std::string& path);
+
+/// The scenario with its random_pipe drawn by `seed` (0 or no random_pipe: unchanged): the pipe's pose and length, and its
+/// table and stands under it.  Same seed, same world.  Pure function.
+Scenario randomised(const Scenario& scenario, unsigned seed);
+
+}  // namespace longarm::planning
