@@ -33,6 +33,8 @@ struct Feature {
   FeatureKind kind = FeatureKind::kPoint;
   std::string parent = "base_link";
   std::vector<FeatureVertex> vertices;
+  /// Covariance between vertices 0 and 1 from the calibration they share; zero when unknown [m^2].
+  Eigen::Matrix3d cross_covariance = Eigen::Matrix3d::Zero();
   std::vector<std::string> warnings;
 
   /// Line only: unit direction from vertex 0 to 1, length [m] and its standard deviation [m].
@@ -41,8 +43,10 @@ struct Feature {
   double lengthSigma() const;
 };
 
-/// cli.md's "feature".
+/// The feature as the headless verbs print and read it; a line adds direction, length and length_sigma.
 nlohmann::json toJson(const Feature& feature);
+/// Only name, kind and the vertices' xyz are required.  An object with "features" (what the verb `target`
+/// prints) is taken when exactly one of them was measured.
 /// @returns kInvalidInput naming the key and value.
 Result<Feature> featureFromJson(const nlohmann::json& json);
 

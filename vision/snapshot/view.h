@@ -26,6 +26,7 @@ struct View {
   Pose X_WC = Pose::Identity();              ///< Camera optical frame in `parent`.
   double sigma_px = 0.5;                     ///< Pick noise, 1 sigma [px].
   /// Covariance of (rotvec [rad], translation [m]) of X_WC as a left perturbation in `parent`; zero if unknown.
+  /// The two parts are split: R <- Exp(rotvec) R, p <- p + translation (the camera turns about its own centre).
   Matrix6d pose_covariance = Matrix6d::Zero();
 
   /// Raw pixel of a point given in `parent`; fails as CameraModel::project.

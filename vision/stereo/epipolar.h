@@ -36,4 +36,10 @@ struct EpipolarCurve {
 Result<EpipolarCurve> epipolarCurve(const View& from, const Eigen::Vector2d& pixel, const View& to,
                                     const EpipolarOptions& options = {});
 
+/// The raw kernel behind the curve: n samples at inverse depths uniform from 1/near to 1/far, as pixels of `to`
+/// (not clipped; NaN where a sample is behind `to` or beyond its lens' monotone range).
+/// @returns false if the pixel has no ray.  @pre 0 < near < far; u and v hold n numbers, n >= 2.
+bool sampleEpipolarCurve(const View& from, const Eigen::Vector2d& pixel, const View& to, double near_m,
+                         double far_m, int n, double* u, double* v);
+
 }  // namespace longarm::vision

@@ -23,6 +23,15 @@ struct Sighting {
 struct TriangulationOptions {
   double refuse_parallax = 0.3 * 0.017453292519943295;   ///< [rad], algorithms: "refuse, offer direction only".
   double warn_parallax = 1.0 * 0.017453292519943295;     ///< [rad]
+  /// With three or more views: residuals beyond this many sigma count linearly (Huber), so that one wrong pick
+  /// does less harm; 0 is plain least squares.  1.345 keeps 95 % efficiency.
+  double huber_sigmas = 0;
+};
+
+/// How a point moves with the pose of one view: d xyz / d (rotvec, translation) of View::pose_covariance.
+struct PoseSensitivity {
+  const View* view = nullptr;
+  Eigen::Matrix<double, 3, 6> d_pose;
 };
 
 /// A measured point Q.
@@ -32,8 +41,12 @@ struct TriangulatedPoint {
   double miss_m = 0;                            ///< Largest distance between any two viewing rays near Q [m].
   double reprojection_rms_px = 0;               ///< sqrt(sum |r|^2 / (2 N)) over N views.
   double parallax = 0;                          ///< Largest angle between two rays [rad].
+  std::vector<PoseSensitivity> sensitivities;   ///< Of the views whose pose covariance is known.
   std::vector<std::string> warnings;
 };
+
+/// Covariance between two points that share views: what their common calibration does to both [m^2].
+Eigen::Matrix3d crossCovariance(const TriangulatedPoint& a, const TriangulatedPoint& b);
 
 /// Finds the point that makes the picks most likely.
 /// @returns kInvalidInput (fewer than two views, different parents, pick not finite or with no ray), or

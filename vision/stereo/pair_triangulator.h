@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file
+/// The quick way from a pair of clicks to a 3-D point with covariance, for drags and batches.
+
+#include <Eigen/Core>
+
+#include "vision/snapshot/view.h"
+
+namespace longarm::vision {
+
+/// What one pair of clicks gives.  Frames and units as TriangulatedPoint; pick noise only.
+struct PairPoint {
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double miss_m = 0;
+  double parallax = 0;                   ///< [rad]
+};
+
+/// Two views prepared once, then solved for many pairs.  Agrees with triangulate() to far below the noise:
+/// the pixel metric is carried to normalised coordinates by the lens' derivative at each click, where two
+/// Gauss-Newton steps are taken.  Thread-compatible; locate() is const and allocates nothing.
+class PairTriangulator {
+ public:
+  /// @pre Both views have the same parent.
+  PairTriangulator(const View& a, const View& b, double refuse_parallax = 0.3 * 0.017453292519943295);
+
+  /// @returns false where triangulate() would refuse (it says why): a pixel has no ray, the rays are too
+  ///   nearly parallel, or they meet behind a camera.
+  bool locate(const Eigen::Vector2d& pixel_a, const Eigen::Vector2d& pixel_b, PairPoint* point) const;
+
+ private:
+  CameraModel m_camera_a, m_camera_b;
+  Eigen::Matrix3d m_R_WA = Eigen::Matrix3d::Identity(), m_R_AB = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d m_p_WA = Eigen::Vector3d::Zero(), m_p_AB = Eigen::Vector3d::Zero();
+  double m_max_radius2_a = 0, m_max_radius2_b = 0;
+  double m_weight_a = 1, m_weight_b = 1;       ///< 1 / sigma_px^2
+  double m_min_sine2 = 0;
+};
+
+}  // namespace longarm::vision
