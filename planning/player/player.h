@@ -14,6 +14,9 @@ namespace longarm::planning {
 struct PlayerOptions {
   double horizon_s = 0.3;                ///< Length of each horizon; every one ends at rest on the path.
   double point_spacing_s = 0.02;
+  /// How long a horizon keeps to the one before it: one that arrives up to this much late still meets the arm.
+  double commit_s = 0.04;
+  double max_rate_change = 10;           ///< Of d tau / dt, besides the joint limits [1/s].
 };
 
 enum class PlayerState { kEmpty, kReady, kPlaying, kPausing, kPaused, kDone, kHalted };
@@ -41,6 +44,7 @@ class Player {
   PlayerState state() const;
   double cursor() const;                 ///< tau [s]
   double rate() const;                   ///< d tau / dt now.
+  double speed() const;                  ///< Wanted factor, as set.
   double duration() const;
   const Trajectory& trajectory() const;
 
