@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file
+/// RobotFeed: what snapshots and aiming need of a connected robot, and nothing more.
+
+#include <memory>
+#include <string>
+
+#include "core/motion.h"
+#include "core/result.h"
+#include "hardware/device.h"
+
+namespace longarm::session {
+
+/// Called on the GUI thread; never waits.
+class RobotFeed {
+ public:
+  virtual ~RobotFeed() = default;
+  /// Now on the clock of the stamps [s].
+  virtual double now_s() const = 0;
+  /// Null before the first, or for a camera that is not there.
+  virtual std::shared_ptr<const hardware::Frame> latestFrame(const std::string& camera) const = 0;
+  /// Null before the first.
+  virtual std::shared_ptr<const JointState> jointState() const = 0;
+  /// Interpolated; kStale outside the last seconds.
+  virtual Result<JointState> jointStateAt(double stamp_s) const = 0;
+  /// Sends a pan-tilt of the workcell to these angles [rad].
+  virtual Status movePanTilt(const std::string& pan_tilt, double pan, double tilt) = 0;
+};
+
+}  // namespace longarm::session

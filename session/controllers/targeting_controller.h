@@ -1,0 +1,88 @@
+#pragma once
+
+/// @file
+/// TargetingController: sketching, as the panes, the feature list and the menus see it.
+
+#include <optional>
+#include <vector>
+
+#include <QObject>
+#include <QString>
+
+#include "session/commands/edit_history.h"
+#include "session/document/feature_rows.h"
+#include "session/document/overlay_builder.h"
+#include "session/tools/tool_host.h"
+
+namespace longarm::session {
+
+/// Owns the tool host; turns the document's changes into signals.  GUI thread only.
+class TargetingController final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// Borrowed; both outlive this.  Takes the history's onChanged callback.
+  TargetingController(Document& document, EditHistory& history, QObject* parent = nullptr);
+  ~TargetingController() override;
+
+  const Document& document() const { return m_document; }
+
+  void setTool(ToolKind kind);
+  ToolKind tool() const { return m_tools.tool(); }
+  /// Empty when the tool can be used now; else why not and what to do.
+  QString whyNotTool(ToolKind kind) const;
+  /// @returns whether the sketch used the event.
+  bool pointer(const vision::PointerEvent& event) { return m_tools.pointer(event); }
+  bool key(vision::SketchKey key, const vision::KeyModifiers& modifiers = {}) { return m_tools.key(key, modifiers); }
+
+  vision::Overlay overlay(PaneSide side) const;
+  /// Features and path in a live picture.
+  vision::Overlay overlay(const vision::View& view) const;
+  QString hint() const { return QString::fromStdString(m_tools.hint()); }
+  std::optional<LiveMeasure> liveMeasure() const { return m_tools.liveMeasure(); }
+
+  std::vector<FeatureRow> rows() const { return featureRows(m_document); }
+  void select(FeatureId id);                       ///< Invalid: nothing.
+  void select(const Selection& selection);
+  void rename(FeatureId id, const QString& name);
+  void setHidden(FeatureId id, bool hidden);
+  void setLocked(FeatureId id, bool locked);
+  void setColour(FeatureId id, std::optional<std::uint32_t> rgb);
+  void duplicate(FeatureId id);
+  void remove(FeatureId id);
+  void removeSelected();
+  void showSnapshot(PaneSide side, SnapshotId id);
+  void removeSnapshot(SnapshotId id);
+
+  bool canUndo() const { return !m_tools.busy() && m_history.canUndo(); }
+  bool canRedo() const { return !m_tools.busy() && m_history.canRedo(); }
+  QString undoLabel() const { return QString::fromStdString(m_history.undoLabel()); }
+  QString redoLabel() const { return QString::fromStdString(m_history.redoLabel()); }
+  bool isClean() const { return m_history.isClean(); }
+  void undo();
+  void redo();
+
+ Q_SIGNALS:
+  void overlayChanged();                           ///< Paint both panes again.
+  void hintChanged(const QString& hint);
+  void toolChanged(longarm::session::ToolKind kind);
+  void featuresChanged();                          ///< rows() differ: items, numbers or selection.
+  void selectionChanged();
+  void panesChanged();                             ///< Which picture is in which pane.
+  void snapshotsChanged();                         ///< The library.
+  void planChanged();
+  void historyChanged();                           ///< canUndo, canRedo, labels, isClean.
+  void liveMeasureChanged();                       ///< While dragging, at each move.
+
+ private:
+  void changed(const Change& change);
+  void push(std::unique_ptr<EditCommand> command);
+
+  Document& m_document;
+  EditHistory& m_history;
+  ToolHost m_tools;
+  int m_observer = 0;
+  std::vector<Eigen::Vector3d> m_path;
+};
+
+}  // namespace longarm::session

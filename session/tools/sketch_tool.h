@@ -1,0 +1,88 @@
+#pragma once
+
+/// @file
+/// The interface of sketch tools: explicit state machines that never write the document.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "session/commands/edit_command.h"
+#include "session/document/document.h"
+#include "vision/sketch/pointer_event.h"
+
+namespace longarm::session {
+
+enum class ToolKind { kSelect, kPoint, kLine };
+
+/// One vertex of one item in one picture.
+struct Handle {
+  FeatureId item;
+  int vertex = -1;
+  SnapshotId snapshot;
+  PaneSide side = PaneSide::kLeft;
+
+  bool valid() const { return vertex >= 0; }
+  friend bool operator==(const Handle& a, const Handle& b) {
+    return a.item == b.item && a.vertex == b.vertex && a.snapshot == b.snapshot;
+  }
+};
+
+/// What the host must do after an event.
+struct ToolReply {
+  bool consumed = false;                       ///< The tool used the event.
+  bool redraw = false;                         ///< Preview, hint or active handle changed.
+  bool finished = false;                       ///< Go back to the default tool.
+  std::unique_ptr<EditCommand> command;        ///< At most one per gesture; null: none.
+  std::optional<Selection> selection;          ///< Selection to set after the command.
+};
+
+/// Numbers of the vertex under the operator's hand, while it is dragged and after.
+struct LiveMeasure {
+  Handle handle;
+  Eigen::Vector2d raw = Eigen::Vector2d::Zero();          ///< Where the pointer asks for it [raw px].
+  Eigen::Vector2d constrained = Eigen::Vector2d::Zero();  ///< Where it is [raw px].
+  bool on_curve = false;                                  ///< Held on the epipolar curve.
+  bool released = false;                                  ///< Let go of it by Control.
+  std::optional<Eigen::Vector3d> xyz;                     ///< In the views' parent frame [m]; empty: one view only.
+  double plus_minus = 0;                                  ///< 95 % along the worst axis [m].
+  double miss = 0;                                        ///< Distance of the viewing rays [m].
+  std::optional<double> depth;                            ///< z in the other picture's camera [m].
+  std::optional<double> length, length_plus_minus;        ///< Lines whose two ends are measured; +- 95 % [m].
+  std::string reason;                                     ///< Why there is no xyz.
+  std::vector<std::string> warnings;
+
+  /// One line for a status bar: "x 812.0  y -35.2  z 410.9 mm ± 3.1   miss 0.4 mm   length 402.1 ± 1.3 mm".
+  std::string text() const;
+};
+
+/// Knows no Qt.  Reads the document that activate() gave it and never writes it: a gesture ends in one command.
+class SketchTool {
+ public:
+  virtual ~SketchTool() = default;
+  virtual ToolKind kind() const = 0;
+  /// Starts afresh.  The document must outlive the tool's use.
+  virtual void activate(const Document& document) = 0;
+  /// Drops whatever was going on without a trace.
+  virtual void deactivate() = 0;
+  virtual ToolReply onPointer(const vision::PointerEvent& event) = 0;
+  virtual ToolReply onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) = 0;
+  /// Esc: one step back; never commits.
+  virtual ToolReply cancel() = 0;
+  /// The document changed under the tool (undo, deletion): handles that are gone are let go.
+  virtual void documentChanged() = 0;
+
+  /// The provisional item that stands for the document's one of the same id; null: none.
+  virtual const SketchItem* draft() const = 0;
+  /// Beyond sketch and draft: epipolar curve, depth ticks, miss line.  Pure function of the state.
+  virtual vision::Overlay preview(PaneSide side) const = 0;
+  /// The handle that keys act on; invalid when there is none.
+  virtual Handle activeHandle() const = 0;
+  virtual std::optional<LiveMeasure> liveMeasure() const = 0;
+  /// Status text for the state.
+  virtual std::string hint() const = 0;
+};
+
+std::unique_ptr<SketchTool> makeTool(ToolKind kind);
+
+}  // namespace longarm::session

@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file
+/// ToolHost: owns the active tool, applies what it answers, tells who draws.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "session/commands/edit_history.h"
+#include "session/document/overlay_builder.h"
+#include "session/tools/sketch_tool.h"
+
+namespace longarm::session {
+
+/// GUI thread only; no Qt.
+class ToolHost {
+ public:
+  struct Callbacks {
+    std::function<void()> overlay_changed;     ///< Draw both panes again.
+    std::function<void(const std::string&)> hint_changed;
+    std::function<void(ToolKind)> tool_changed;
+  };
+
+  ToolHost(Document& document, EditHistory& history);
+  ~ToolHost();
+  ToolHost(const ToolHost&) = delete;
+  ToolHost& operator=(const ToolHost&) = delete;
+
+  void setCallbacks(Callbacks callbacks) { m_callbacks = std::move(callbacks); }
+
+  /// Ends the former tool without a trace and starts this one afresh.
+  void setTool(ToolKind kind);
+  ToolKind tool() const;
+
+  /// @returns whether the tool used it; what it did not use belongs to the canvas.
+  bool pointer(const vision::PointerEvent& event);
+  bool key(vision::SketchKey key, const vision::KeyModifiers& modifiers = {});
+
+  /// Everything to draw over the picture in this pane: sketch, path, preview.
+  vision::Overlay overlay(PaneSide side, const OverlayOptions& options = {}) const;
+  std::string hint() const;
+  std::optional<LiveMeasure> liveMeasure() const;
+  Handle activeHandle() const;
+  /// A drag is going on: undo and other edits wait until it ends.
+  bool busy() const;
+
+ private:
+  bool handle(ToolReply reply);
+  void announce();
+
+  Document& m_document;
+  EditHistory& m_history;
+  std::unique_ptr<SketchTool> m_tool;
+  Callbacks m_callbacks;
+  int m_observer = 0;
+  bool m_in_reply = false;
+};
+
+}  // namespace longarm::session
