@@ -30,6 +30,9 @@ class PlanRep final : public Representation {
   PlanRep(std::shared_ptr<const planning::RobotModel> model, const std::string& tip_link);
   ~PlanRep() override;
 
+  void addTo(vtkRenderer* renderer) override;
+  void removeFrom(vtkRenderer* renderer) override;
+  void setVisible(bool visible) override;
   /// A plan that is not ok draws only its failed pose, as red axes.
   void update(const planning::Plan& plan);
   void clear();

@@ -25,12 +25,12 @@ class Representation {
 
   /// Shows the props in `renderer` until removeFrom() or destruction; props made later follow.  May be called
   /// for one renderer at a time; a second call moves them.  The renderer may die first.
-  void addTo(vtkRenderer* renderer);
-  void removeFrom(vtkRenderer* renderer);
-  void setVisible(bool visible);
+  virtual void addTo(vtkRenderer* renderer);
+  virtual void removeFrom(vtkRenderer* renderer);
+  virtual void setVisible(bool visible);
   bool visible() const;
   /// Box around everything visible [m]; empty if there is nothing.
-  Eigen::AlignedBox3d bounds() const;
+  virtual Eigen::AlignedBox3d bounds() const;
 
  protected:
   Representation();

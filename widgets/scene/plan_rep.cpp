@@ -1,0 +1,179 @@
+#include "widgets/scene/plan_rep.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <vtkActor.h>  // vtkRenderingCore
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkWeakPointer.h>
+
+#include "core/require.h"
+#include "widgets/scene/ground_grid_rep.h"
+#include "widgets/scene/robot_rep.h"
+
+namespace longarm::scene {
+namespace {
+
+/// Full configuration of the plan at time t.
+Eigen::VectorXd configurationAt(const planning::RobotModel& model, const planning::Plan& plan, double t) {
+  Eigen::VectorXd q = plan.start_configuration.size() == model.dof() ? plan.start_configuration : model.neutral();
+  if (plan.trajectory.empty()) return q;
+  JointState state;
+  state.names = plan.trajectory.joint_names;
+  state.positions = plan.trajectory.sample(t).positions;
+  model.assign(state, q);
+  return q;
+}
+
+}  // namespace
+
+std::vector<Pose> toolTrail(const planning::RobotModel& model, const std::string& tip_link,
+                            const planning::Plan& plan, int samples) {
+  std::vector<Pose> trail;
+  const Result<int> tip = model.linkIndex(tip_link);
+  if (!tip || plan.trajectory.empty()) return trail;
+  for (int i = 0; i < std::max(2, samples); ++i) {
+    const double t = plan.trajectory.duration() * i / (std::max(2, samples) - 1);
+    trail.push_back(model.forward(configurationAt(model, plan, t), *tip));
+  }
+  return trail;
+}
+
+struct PlanRep::Impl {
+  std::shared_ptr<const planning::RobotModel> model;
+  std::string tip_link;
+  PlanLook look;
+  planning::Plan plan;
+  double cursor = 0;
+  bool ghost_visible = true;
+  vtkWeakPointer<vtkRenderer> renderer;
+  vtkNew<vtkPolyData> trail;
+  vtkNew<vtkActor> trail_actor;
+  std::unique_ptr<RobotRep> ghost;
+  std::vector<std::unique_ptr<RobotRep>> swept;
+  std::vector<std::unique_ptr<AxesRep>> axes;
+
+  void forEachChild(const std::function<void(Representation&)>& action) const {
+    if (ghost) action(*ghost);
+    for (const auto& rep : swept) action(*rep);
+    for (const auto& rep : axes) action(*rep);
+  }
+  RobotLook ghostLook(double factor) const { return {look.ghost_opacity * factor, look.ghost_tint, false}; }
+
+  void paintTrail() {
+    const Eigen::Vector3d& color = look.trail_color;
+    trail_actor->GetProperty()->SetColor(color[0], color[1], color[2]);
+  }
+
+  void buildTrail() {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> lines;
+    std::vector<vtkIdType> ids;
+    for (const Pose& X : toolTrail(*model, tip_link, plan, look.trail_samples)) {
+      ids.push_back(points->InsertNextPoint(X.translation().data()));
+    }
+    if (ids.size() > 1) lines->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+    trail->SetPoints(points);
+    trail->SetLines(lines);
+  }
+
+  void addAxes(const Pose& X, double length) {
+    axes.push_back(std::make_unique<AxesRep>());
+    axes.back()->update(X, length, 3);
+  }
+
+  void buildAxes() {
+    axes.clear();
+    if (!plan.ok() && plan.failed_pose) addAxes(*plan.failed_pose, 0.12);
+    const Result<int> tip = model->linkIndex(tip_link);
+    if (!plan.ok() || !look.axes_at_stages || !tip) return;
+    for (const planning::PlanStage& stage : plan.stages) {
+      addAxes(model->forward(configurationAt(*model, plan, stage.end_s), *tip), 0.06);
+    }
+  }
+
+  void buildSwept() {
+    swept.clear();
+    for (int i = 1; i <= look.swept_ghosts && !plan.trajectory.empty(); ++i) {
+      const double t = plan.trajectory.duration() * i / (look.swept_ghosts + 1);
+      swept.push_back(std::make_unique<RobotRep>(model, ghostLook(0.4)));
+      swept.back()->update(configurationAt(*model, plan, t));
+    }
+  }
+};
+
+PlanRep::PlanRep(std::shared_ptr<const planning::RobotModel> model, const std::string& tip_link)
+    : m_impl(std::make_unique<Impl>()) {
+  LONGARM_REQUIRE(model != nullptr, "PlanRep needs a robot model");
+  m_impl->model = std::move(model);
+  m_impl->tip_link = tip_link;
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(m_impl->trail);
+  m_impl->trail_actor->SetMapper(mapper);
+  m_impl->trail_actor->GetProperty()->LightingOff();
+  m_impl->trail_actor->GetProperty()->SetLineWidth(3);
+  m_impl->paintTrail();
+  addProp(m_impl->trail_actor);
+  m_impl->ghost = std::make_unique<RobotRep>(m_impl->model, m_impl->ghostLook(1));
+  clear();
+}
+
+PlanRep::~PlanRep() = default;
+
+void PlanRep::addTo(vtkRenderer* renderer) {
+  Representation::addTo(renderer);
+  m_impl->renderer = renderer;
+  m_impl->forEachChild([&](Representation& rep) { rep.addTo(renderer); });
+}
+
+void PlanRep::removeFrom(vtkRenderer* renderer) {
+  Representation::removeFrom(renderer);
+  if (m_impl->renderer != renderer) return;
+  m_impl->renderer = nullptr;
+  m_impl->forEachChild([&](Representation& rep) { rep.removeFrom(renderer); });
+}
+
+void PlanRep::setVisible(bool visible) {
+  Representation::setVisible(visible);
+  m_impl->forEachChild([&](Representation& rep) { rep.setVisible(visible); });
+  setGhostVisible(m_impl->ghost_visible);
+}
+
+void PlanRep::update(const planning::Plan& plan) {
+  m_impl->plan = plan;
+  m_impl->buildTrail();
+  m_impl->buildSwept();
+  m_impl->buildAxes();
+  addTo(m_impl->renderer);  // new children join
+  setVisible(visible());
+  scrub(0);
+}
+
+void PlanRep::clear() { update(planning::Plan()); }
+
+void PlanRep::scrub(double t) {
+  m_impl->cursor = t;
+  if (!m_impl->plan.trajectory.empty()) m_impl->ghost->update(configurationAt(*m_impl->model, m_impl->plan, t));
+}
+
+void PlanRep::setGhostVisible(bool visible) {
+  m_impl->ghost_visible = visible;
+  m_impl->ghost->setVisible(visible && this->visible() && !m_impl->plan.trajectory.empty());
+}
+
+void PlanRep::setLook(const PlanLook& look) {
+  m_impl->look = look;
+  m_impl->paintTrail();
+  m_impl->ghost->setLook(m_impl->ghostLook(1));
+  const double cursor = m_impl->cursor;
+  update(planning::Plan(m_impl->plan));
+  scrub(cursor);
+}
+
+}  // namespace longarm::scene
