@@ -85,6 +85,8 @@ class RobotModel {
   const std::map<std::string, std::map<std::string, double>>& namedStates() const { return m_named_states; }
   /// Pairs of links (a < b) whose contact the SRDF allows; empty optional when there was no SRDF.
   const std::optional<std::set<std::pair<int, int>>>& srdfAllowedPairs() const { return m_srdf_pairs; }
+  /// Groups that the SRDF gives as a <chain>.
+  const std::vector<JointGroup>& groups() const { return m_groups; }
   /// Chain from base to tip (any two links, tip below base).  kNotFound / kInvalidInput.
   Result<JointGroup> chain(const std::string& base_link, const std::string& tip_link) const;
 
@@ -113,6 +115,7 @@ class RobotModel {
   std::vector<int> m_topological;        ///< Joint indices, parents first.
   std::map<std::string, std::map<std::string, double>> m_named_states;
   std::optional<std::set<std::pair<int, int>>> m_srdf_pairs;
+  std::vector<JointGroup> m_groups;
 };
 
 /// Values of the group's joints out of a full configuration, and back into it.
