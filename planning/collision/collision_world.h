@@ -84,8 +84,9 @@ class CollisionWorld {
   };
   const Counters& counters() const;
 
+  struct Impl;                           ///< Defined inside planning/collision only.
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> m_impl;
 };
 
