@@ -10,6 +10,9 @@
 namespace longarm::planning {
 namespace {
 
+constexpr double kSample = 0.5e-3;       // [s]
+constexpr double kPeakMargin = 1e-4;     // what can rise above the samples
+
 Status checkInput(const JointPath& path, std::size_t joints, const NominalLimits& limits) {
   const auto n = static_cast<Eigen::Index>(joints);
   const PathState start = path.at(0), end = path.at(path.length());
@@ -68,12 +71,16 @@ void slowDown(Trajectory& trajectory, double factor) {
 LimitRatios limitRatios(const Trajectory& trajectory, const Eigen::VectorXd& max_velocity,
                         const Eigen::VectorXd& max_acceleration) {
   LimitRatios ratios;
-  const int samples = static_cast<int>(std::ceil(trajectory.duration() * 1000)) + 1;
-  for (int i = 0; i < samples; ++i) {
-    const TrajectoryPoint p = trajectory.sample(i * 1e-3);
+  const auto look = [&](double t) {
+    const TrajectoryPoint p = trajectory.sample(t);
     ratios.velocity = std::max(ratios.velocity, (p.velocities.cwiseAbs().array() / max_velocity.array()).maxCoeff());
     ratios.acceleration =
         std::max(ratios.acceleration, (p.accelerations.cwiseAbs().array() / max_acceleration.array()).maxCoeff());
+  };
+  for (std::size_t i = 1; i < trajectory.points.size(); ++i) {
+    const double from = trajectory.points[i - 1].t, h = trajectory.points[i].t - from;
+    const int samples = std::max(8, static_cast<int>(std::ceil(h / kSample)));
+    for (int k = 0; k <= samples; ++k) look(from + h * k / samples);
   }
   return ratios;
 }
@@ -101,8 +108,8 @@ Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::st
   out.points.front().velocities.setZero();
   out.points.back().velocities.setZero();
   const LimitRatios ratios = limitRatios(out, limits.max_velocity, limits.max_acceleration);
-  const double slower = std::max({ratios.velocity, std::sqrt(ratios.acceleration), tool_ratio});
-  if (slower > 1) slowDown(out, slower * (1 + 1e-9));
+  const double slower = std::max({ratios.velocity, std::sqrt(ratios.acceleration), tool_ratio}) * (1 + kPeakMargin);
+  if (slower > 1) slowDown(out, slower);
   return out;
 }
 

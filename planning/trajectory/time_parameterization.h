@@ -27,13 +27,13 @@ struct TimingOptions {
 /// Rest to rest along the path as fast as the limits allow.
 ///
 /// The fastest law (time_law.h) is averaged over a window, so that acceleration is continuous and quintic interpolation
-/// between the points follows it; then it is sampled at 1 kHz as Trajectory::sample() will play it, and slowed down
-/// as a whole by what a limit is still passed (a percent or so).
+/// between the points follows it; then it is sampled every 0.5 ms as Trajectory::sample() will play it, and slowed
+/// down as a whole by what a limit is still passed (a percent or so).
 /// @returns kDegenerate when path and limits do not fit together (sizes, zero length, not finite).
 Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::string>& joint_names,
                                 const NominalLimits& limits, const TimingOptions& options = {});
 
-/// Largest |velocity| / limit and |acceleration| / limit over 1 kHz samples.
+/// Largest |velocity| / limit and |acceleration| / limit over samples at most 0.5 ms apart, the points among them.
 struct LimitRatios {
   double velocity = 0, acceleration = 0;
 };
