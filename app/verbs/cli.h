@@ -69,6 +69,9 @@ Result<nlohmann::json> readJsonFile(const std::string& path);
 /// "a,b,c" as numbers; kInvalidInput naming `option`.
 Result<Eigen::VectorXd> numbersOption(const std::string& option, const std::string& text);
 
+/// A pose written as seven numbers or as JSON; kInvalidInput naming `option`.
+Result<Pose> poseOption(const std::string& option, const std::string& text);
+
 /// A table for people: columns padded, first row the heading.
 std::string tableText(const std::vector<std::vector<std::string>>& rows);
 
