@@ -2,9 +2,6 @@
 
 #include <cstdio>
 
-#ifdef LONGARM_HAS_GUI
-#include "ui/console.h"
-#endif
 
 namespace longarm::app {
 

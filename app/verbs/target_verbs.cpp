@@ -1,0 +1,153 @@
+// target, epipolar, undistort
+#include "app/verbs/cli.h"
+#include "core/text.h"
+#include "vision/camera/camera_file.h"
+#include "vision/camera/undistort.h"
+#include "vision/snapshot/image_file.h"
+#include "vision/snapshot/views_file.h"
+#include "vision/stereo/epipolar.h"
+
+namespace longarm::app {
+namespace {
+
+struct TargetOptions {
+  std::string views, picks;
+};
+
+struct EpipolarVerbOptions {
+  std::string views, from, to, pixel, depth;
+};
+
+struct UndistortOptions {
+  std::string camera, in, out, camera_out;
+};
+
+std::string millimetres(double metres) { return formatFixed(metres * 1e3, 2); }
+
+std::string targetTable(const std::vector<vision::MeasuredFeature>& features) {
+  std::vector<std::vector<std::string>> rows = {{"feature", "kind", "vertex", "x m", "y m", "z m", "+-mm (2 sigma)", "miss mm", "rms px"}};
+  std::string notes;
+  for (const auto& f : features) {
+    if (!f.outcome) {
+      notes += f.name + ": " + f.outcome.error().message + "\n";
+      continue;
+    }
+    int index = 0;
+    for (const auto& v : f.outcome->vertices) {
+      rows.push_back({f.name, vision::toString(f.kind), std::to_string(index++), formatFixed(v.xyz.x(), 4), formatFixed(v.xyz.y(), 4),
+                      formatFixed(v.xyz.z(), 4), millimetres(2 * std::sqrt(v.covariance.trace())), millimetres(v.miss_m),
+                      formatFixed(v.reprojection_rms_px, 2)});
+    }
+    if (f.kind == vision::FeatureKind::kLine) {
+      notes += f.name + ": length " + millimetres(f.outcome->length()) + " mm +- " + millimetres(2 * f.outcome->lengthSigma()) + " mm\n";
+    }
+    for (const auto& warning : f.outcome->warnings) notes += f.name + ": warning: " + warning + "\n";
+  }
+  return tableText(rows) + notes;
+}
+
+Result<Answer> runTarget(const TargetOptions& options) {
+  const auto views = vision::readViewsFile(options.views);
+  if (!views) return views.error();
+  const auto picks = vision::readPicksFile(options.picks);
+  if (!picks) return picks.error();
+  const auto features = vision::measureAll(*views, *picks);
+  if (!features) return Error{features.error().code, options.picks + ": " + features.error().message};
+  bool any = false;
+  for (const auto& f : *features) any = any || f.outcome.ok();
+  return Answer{vision::targetJson(*features), targetTable(*features), any ? kExitDone : kExitNoSolution};
+}
+
+Result<const vision::View*> viewOption(const vision::ViewSet& views, const std::string& option, const std::string& name) {
+  const vision::View* view = views.find(name);
+  if (view != nullptr) return view;
+  std::string names;
+  for (const auto& entry : views.entries) names += (names.empty() ? "" : ", ") + entry.view.name;
+  return Error{ErrorCode::kInvalidInput, option + ": there is no view \"" + name + "\"; the file has " + names};
+}
+
+Result<Answer> runEpipolar(const EpipolarVerbOptions& options) {
+  const auto views = vision::readViewsFile(options.views);
+  if (!views) return views.error();
+  const auto from = viewOption(*views, "--from", options.from);
+  if (!from) return from.error();
+  const auto to = viewOption(*views, "--to", options.to);
+  if (!to) return to.error();
+  const auto pixel = numbersOption("--pixel", options.pixel);
+  if (!pixel) return pixel.error();
+  if (pixel->size() != 2) return Error{ErrorCode::kInvalidInput, "--pixel: write u,v"};
+  vision::EpipolarOptions epipolar;
+  if (!options.depth.empty()) {
+    const auto depth = numbersOption("--depth", options.depth);
+    if (!depth) return depth.error();
+    if (depth->size() != 2) return Error{ErrorCode::kInvalidInput, "--depth: write min,max in metres"};
+    epipolar.min_depth = (*depth)[0];
+    epipolar.max_depth = (*depth)[1];
+  }
+  const auto curve = vision::epipolarCurve(**from, pixel->head<2>(), **to, epipolar);
+  if (!curve) return curve.error();
+  nlohmann::json json = {{"from", options.from}, {"to", options.to}, {"curve_px", nlohmann::json::array()},
+                         {"depths", nlohmann::json::array()}};
+  std::vector<std::vector<std::string>> rows = {{"u px", "v px", "depth m"}};
+  for (const auto& p : curve->points) {
+    json["curve_px"].push_back({p.pixel.x(), p.pixel.y()});
+    json["depths"].push_back(p.depth);
+    rows.push_back({formatFixed(p.pixel.x(), 2), formatFixed(p.pixel.y(), 2), formatFixed(p.depth, 3)});
+  }
+  if (curve->points.empty()) {
+    return noSolution(json, "not_visible", "no point of this pixel's ray between " + formatNumber(epipolar.min_depth) + " m and " +
+                                               formatNumber(epipolar.max_depth) + " m is seen by " + options.to);
+  }
+  return Answer{json, tableText(rows), kExitDone};
+}
+
+Result<Answer> runUndistort(const UndistortOptions& options) {
+  const auto camera = vision::readCameraFile(options.camera);
+  if (!camera) return camera.error();
+  const auto image = vision::loadImage(options.in);
+  if (!image) return image.error();
+  auto undistorted = vision::undistortImage(*image, camera->camera);
+  if (!undistorted) return Error{undistorted.error().code, options.in + ": " + undistorted.error().message};
+  if (const auto saved = vision::saveImage(options.out, undistorted->image); !saved) return saved.error();
+  vision::CameraFile file{undistorted->camera, camera->pose, {}};
+  if (!options.camera_out.empty()) {
+    if (const auto saved = vision::writeCameraFile(options.camera_out, file); !saved) return saved.error();
+  }
+  return Answer{{{"camera", vision::toJson(file)}, {"out", options.out}}, "wrote " + options.out + "\n", kExitDone};
+}
+
+}  // namespace
+
+void addTargetVerbs(Cli& cli) {
+  cli.addVerb<TargetOptions>(
+      cli.app(), "target", "Measure points and lines from picks in two or more views",
+      "longarm target --views views.yaml --picks picks.csv --json",
+      [](CLI::App& verb, TargetOptions& options) {
+        verb.add_option("--views", options.views, "Cameras of the measurement (views.yaml)")->required();
+        verb.add_option("--picks", options.picks, "Picks: feature,kind,vertex,view,u,v (picks.csv)")->required();
+      },
+      runTarget);
+  cli.addVerb<EpipolarVerbOptions>(
+      cli.app(), "epipolar", "Where a pixel of one view may lie in another",
+      "longarm epipolar --views views.yaml --from left --pixel 320,240 --to right --depth 0.5,3 --json",
+      [](CLI::App& verb, EpipolarVerbOptions& options) {
+        verb.add_option("--views", options.views, "Cameras (views.yaml)")->required();
+        verb.add_option("--from", options.from, "View of the pick")->required();
+        verb.add_option("--pixel", options.pixel, "The pick, u,v in raw pixels")->required();
+        verb.add_option("--to", options.to, "View that the curve is wanted in")->required();
+        verb.add_option("--depth", options.depth, "Nearest and farthest depth in the first camera, min,max in metres (default 0.15,20)");
+      },
+      runEpipolar);
+  cli.addVerb<UndistortOptions>(
+      cli.app(), "undistort", "Take the lens distortion out of a picture",
+      "longarm undistort --camera left.yaml --in left.png --out left_straight.png --json",
+      [](CLI::App& verb, UndistortOptions& options) {
+        verb.add_option("--camera", options.camera, "Camera file")->required();
+        verb.add_option("--in", options.in, "Picture of that camera")->required();
+        verb.add_option("--out", options.out, "Where to write (.png or .jpg)")->required();
+        verb.add_option("--camera-out", options.camera_out, "Where to write the camera file of the new picture");
+      },
+      runUndistort);
+}
+
+}  // namespace longarm::app
