@@ -27,6 +27,11 @@ vision::Overlay buildOverlay(const Document& document, SnapshotId snapshot, cons
 /// The same for any view (a live picture): features are projected, picks are not drawn.
 vision::Overlay buildOverlay(const Document& document, const vision::View& view, const OverlayOptions& options = {});
 
+/// The picture of a straight edge of the world between two raw pixels, bent as the lens bends it: a polyline from
+/// `a` to `b`.  Without a usable ray at an end it is the straight segment.
+std::vector<Eigen::Vector2d> pictureOfEdge(const vision::CameraModel& camera, const Eigen::Vector2d& a,
+                                           const Eigen::Vector2d& b);
+
 /// Tip positions along a plan in the robot's root frame, one each `step_s` of the trajectory; empty without one.
 std::vector<Eigen::Vector3d> planPath(const planning::Workcell& workcell, const planning::Plan& plan,
                                       double step_s = 0.05);

@@ -78,6 +78,10 @@ class SketchTool {
   virtual vision::Overlay preview(PaneSide side) const = 0;
   /// The handle that keys act on; invalid when there is none.
   virtual Handle activeHandle() const = 0;
+  /// Takes over the handle of the tool before, so that keys go on with it.  Ignored when it is not there.
+  virtual void setActiveHandle(const Handle& handle) = 0;
+  /// Whether a drag is going on.
+  virtual bool busy() const = 0;
   virtual std::optional<LiveMeasure> liveMeasure() const = 0;
   /// Status text for the state.
   virtual std::string hint() const = 0;

@@ -42,6 +42,7 @@ struct OverlayShape {
   OverlayRole role = OverlayRole::kSketch;
   std::vector<Eigen::Vector2d> points;     ///< Raw image pixels.
   std::string text;                        ///< kText: label; anchored at points[0].
+  int colour_rgb = -1;                     ///< 0xRRGGBB the operator gave the feature; -1: the role's colour.
 };
 
 /// Shapes for one picture, in drawing order.

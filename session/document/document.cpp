@@ -1,0 +1,248 @@
+#include "session/document/document.h"
+
+#include <algorithm>
+
+#include "core/require.h"
+#include "core/text.h"
+#include "vision/stereo/measure.h"
+
+namespace longarm::session {
+
+namespace {
+
+std::string vertexWord(vision::FeatureKind kind, int vertex) {
+  if (kind == vision::FeatureKind::kPoint) return "it";
+  if (kind == vision::FeatureKind::kLine) return "end " + std::to_string(vertex + 1);
+  return "corner " + std::to_string(vertex + 1);
+}
+
+const char* kindTitle(vision::FeatureKind kind) {
+  switch (kind) {
+    case vision::FeatureKind::kPoint: return "Point";
+    case vision::FeatureKind::kLine: return "Line";
+    case vision::FeatureKind::kPlane: return "Plane";
+    case vision::FeatureKind::kTriad: return "Triad";
+  }
+  return "Feature";
+}
+
+std::string offPicture(const SketchItem& item, int vertex, const vision::View& view, const Eigen::Vector2d& pixel) {
+  return "'" + item.name + "' is not measured: " + vertexWord(item.kind, vertex) + " is marked at (" +
+         formatFixed(pixel.x(), 1) + ", " + formatFixed(pixel.y(), 1) + "), outside picture " + view.name + " (" +
+         std::to_string(view.camera.width) + " x " + std::to_string(view.camera.height) +
+         " px). Drag it onto the picture.";
+}
+
+std::string tooFewPictures(const SketchItem& item, int vertex, std::size_t count) {
+  const std::string where = count == 0 ? "in no picture yet" : "in one picture only";
+  return "'" + item.name + "' is not measured: " + vertexWord(item.kind, vertex) + " is marked " + where +
+         ". Mark it in two pictures.";
+}
+
+}  // namespace
+
+bool operator==(const DocumentState& a, const DocumentState& b) {
+  return a.snapshots == b.snapshots && a.panes == b.panes && a.items == b.items;
+}
+
+std::uint64_t hashOf(const DocumentState& state) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  const auto mix = [&hash](std::uint64_t value) {
+    hash ^= value;
+    hash *= 1099511628211ULL;
+    hash ^= hash >> 29;
+  };
+  for (const auto& snapshot : state.snapshots) mix(snapshot->id.value);
+  for (const SnapshotId id : state.panes) mix(id.value + 0x51ULL);
+  for (const auto& item : state.items) mix(hashOf(item));
+  return hash;
+}
+
+Document::Document() = default;
+Document::~Document() = default;
+
+SnapshotPtr Document::snapshot(SnapshotId id) const {
+  for (const auto& snapshot : m_state.snapshots) {
+    if (snapshot->id == id) return snapshot;
+  }
+  return nullptr;
+}
+
+const SketchItem* Document::item(FeatureId id) const {
+  const int index = indexOf(id);
+  return index < 0 ? nullptr : &m_state.items[static_cast<std::size_t>(index)];
+}
+
+int Document::indexOf(FeatureId id) const {
+  for (std::size_t i = 0; i < m_state.items.size(); ++i) {
+    if (m_state.items[i].id == id) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const Measurement& Document::measurement(FeatureId id) const {
+  const auto found = m_measurements.find(id);
+  LONGARM_REQUIRE(found != m_measurements.end(), "no measurement of feature " + std::to_string(id.value));
+  return found->second;
+}
+
+Measurement Document::measure(const SketchItem& item) const {
+  std::vector<std::vector<vision::Sighting>> vertices(static_cast<std::size_t>(vision::vertexCount(item.kind)));
+  for (const auto& [id, list] : item.picks) {
+    const SnapshotPtr picture = snapshot(id);
+    if (!picture) continue;
+    for (std::size_t vertex = 0; vertex < list.size() && vertex < vertices.size(); ++vertex) {
+      if (!list[vertex] || !list[vertex]->placed()) continue;
+      const Eigen::Vector2d& pixel = list[vertex]->pixel;
+      // Half a pixel beyond the outer centres is still the picture.
+      if (!picture->view.camera.containsPixel(pixel, 0.5)) {
+        return {{}, offPicture(item, static_cast<int>(vertex), picture->view, pixel)};
+      }
+      vertices[vertex].push_back({&picture->view, pixel, 0});
+    }
+  }
+  for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+    if (vertices[vertex].size() < 2) {
+      return {{}, tooFewPictures(item, static_cast<int>(vertex), vertices[vertex].size())};
+    }
+  }
+  auto feature = vision::measureFeature(item.name, item.kind, vertices);
+  if (!feature) return {{}, feature.error().message};
+  return {std::move(*feature), {}};
+}
+
+const vision::Feature* Document::selectedFeature() const {
+  const auto found = m_measurements.find(m_selection.primary);
+  return found != m_measurements.end() && found->second.feature ? &*found->second.feature : nullptr;
+}
+
+std::string Document::freeName(vision::FeatureKind kind) const {
+  for (std::size_t number = 1;; ++number) {
+    const std::string name = std::string(kindTitle(kind)) + " " + std::to_string(number);
+    const bool taken = std::any_of(m_state.items.begin(), m_state.items.end(),
+                                   [&](const SketchItem& item) { return item.name == name; });
+    if (!taken) return name;
+  }
+}
+
+int Document::observe(std::function<void(const Change&)> observer) {
+  m_observers[m_next_observer] = std::move(observer);
+  return m_next_observer++;
+}
+
+void Document::unobserve(int handle) { m_observers.erase(handle); }
+
+void Document::notify(ChangeKind kind, std::uint64_t id) {
+  const auto observers = m_observers;  // A copy: an observer may take itself off the list.
+  for (const auto& [handle, observer] : observers) {
+    if (m_observers.count(handle) != 0) observer({kind, id});
+  }
+}
+
+void Document::remeasure(const SketchItem& item) { m_measurements[item.id] = measure(item); }
+
+void Document::insertSnapshot(std::size_t index, SnapshotPtr snapshot) {
+  LONGARM_REQUIRE(snapshot && snapshot->id.valid() && !this->snapshot(snapshot->id), "snapshot without a new id");
+  const SnapshotId id = snapshot->id;
+  index = std::min(index, m_state.snapshots.size());
+  m_state.snapshots.insert(m_state.snapshots.begin() + static_cast<std::ptrdiff_t>(index), std::move(snapshot));
+  m_next_snapshot = std::max(m_next_snapshot, id.value + 1);
+  for (const auto& item : m_state.items) {
+    if (item.picks.count(id) != 0) remeasure(item);
+  }
+  notify(ChangeKind::kSnapshotAdded, id.value);
+}
+
+void Document::removeSnapshot(SnapshotId id) {
+  const auto found = std::find_if(m_state.snapshots.begin(), m_state.snapshots.end(),
+                                  [id](const SnapshotPtr& s) { return s->id == id; });
+  LONGARM_REQUIRE(found != m_state.snapshots.end(), "no snapshot " + std::to_string(id.value));
+  m_state.snapshots.erase(found);
+  for (const PaneSide side : {PaneSide::kLeft, PaneSide::kRight}) {
+    if (paneSnapshotId(side) == id) setPane(side, {});
+  }
+  for (const auto& item : m_state.items) {
+    if (item.picks.count(id) != 0) remeasure(item);
+  }
+  notify(ChangeKind::kSnapshotRemoved, id.value);
+}
+
+void Document::setPane(PaneSide side, SnapshotId id) {
+  auto& pane = m_state.panes[static_cast<std::size_t>(side)];
+  if (pane == id) return;
+  pane = id;
+  notify(ChangeKind::kPaneChanged, static_cast<std::uint64_t>(side));
+}
+
+void Document::insertItem(std::size_t index, SketchItem item) {
+  LONGARM_REQUIRE(item.id.valid() && indexOf(item.id) < 0, "item without a new id");
+  index = std::min(index, m_state.items.size());
+  m_next_feature = std::max(m_next_feature, item.id.value + 1);
+  const FeatureId id = item.id;
+  remeasure(item);
+  m_state.items.insert(m_state.items.begin() + static_cast<std::ptrdiff_t>(index), std::move(item));
+  notify(ChangeKind::kItemAdded, id.value);
+}
+
+void Document::removeItem(FeatureId id) {
+  const int index = indexOf(id);
+  LONGARM_REQUIRE(index >= 0, "no item " + std::to_string(id.value));
+  m_state.items.erase(m_state.items.begin() + index);
+  m_measurements.erase(id);
+  notify(ChangeKind::kItemRemoved, id.value);
+  select(m_selection);
+}
+
+void Document::replaceItem(const SketchItem& item) {
+  const int index = indexOf(item.id);
+  LONGARM_REQUIRE(index >= 0, "no item " + std::to_string(item.id.value));
+  const SketchItem copy = item;  // The argument may live in the list itself.
+  m_state.items[static_cast<std::size_t>(index)] = copy;
+  remeasure(copy);
+  notify(ChangeKind::kItemChanged, copy.id.value);
+}
+
+void Document::reset(DocumentState state) {
+  m_state = std::move(state);
+  m_measurements.clear();
+  m_selection = {};
+  m_plan.reset();
+  for (const auto& item : m_state.items) {
+    remeasure(item);
+    m_next_feature = std::max(m_next_feature, item.id.value + 1);
+  }
+  for (const auto& snapshot : m_state.snapshots) m_next_snapshot = std::max(m_next_snapshot, snapshot->id.value + 1);
+  notify(ChangeKind::kReset);
+}
+
+void Document::select(Selection selection) {
+  for (auto it = selection.items.begin(); it != selection.items.end();) {
+    it = indexOf(*it) < 0 ? selection.items.erase(it) : std::next(it);
+  }
+  if (!selection.contains(selection.primary)) {
+    selection.primary = selection.items.empty() ? FeatureId{} : *selection.items.rbegin();
+  }
+  if (selection == m_selection) return;
+  m_selection = std::move(selection);
+  notify(ChangeKind::kSelectionChanged);
+}
+
+PlanId Document::setPlan(PlanRecord record) {
+  record.id = {m_next_plan++};
+  m_plan = std::move(record);
+  notify(ChangeKind::kPlanChanged, m_plan->id.value);
+  return m_plan->id;
+}
+
+void Document::clearPlan() {
+  if (!m_plan) return;
+  m_plan.reset();
+  notify(ChangeKind::kPlanChanged);
+}
+
+void Document::setWorkcell(std::shared_ptr<const planning::Workcell> workcell) {
+  m_workcell = std::move(workcell);
+  notify(ChangeKind::kWorkcellChanged);
+}
+
+}  // namespace longarm::session

@@ -1,0 +1,191 @@
+#include "session/document/overlay_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.h"
+#include "session/document/feature_rows.h"
+#include "vision/sketch/overlay.h"
+
+namespace longarm::session {
+
+using vision::Overlay;
+using vision::OverlayRole;
+using vision::OverlayShape;
+
+namespace {
+
+void addMarker(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel) {
+  overlay.shapes.push_back({OverlayShape::Kind::kMarker, role, {pixel}, {}});
+}
+
+void addText(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel, std::string text) {
+  overlay.shapes.push_back({OverlayShape::Kind::kText, role, {pixel}, std::move(text)});
+}
+
+/// Name, and how long or where to within what.
+std::string labelOf(const SketchItem& item, const Measurement& measurement) {
+  if (!measurement.feature) return item.name;
+  const FeatureRow row = featureRow(item, measurement);
+  if (row.length) return item.name + "  " + row.length_text;
+  return item.name + "  \u00b1 " + millimetreText(row.plus_minus);
+}
+
+OverlayRole labelRole(const Measurement& measurement) {
+  const bool warns = measurement.feature && !measurement.feature->warnings.empty();
+  return warns ? OverlayRole::kWarning : OverlayRole::kLabel;
+}
+
+void addEllipses(Overlay& overlay, const vision::View& view, const vision::Feature& feature) {
+  for (const auto& vertex : feature.vertices) {
+    auto outline = vision::errorEllipse(view, vertex.xyz, vertex.covariance);
+    if (outline.empty()) continue;
+    overlay.shapes.push_back({OverlayShape::Kind::kPolyline, OverlayRole::kEllipse, std::move(outline), {}});
+  }
+}
+
+Eigen::Vector2d labelPlace(const SketchItem& item, SnapshotId snapshot) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+    if (const SketchPick* pick = item.pick(snapshot, vertex)) {
+      sum += pick->pixel;
+      ++count;
+    }
+  }
+  return count == 0 ? sum : Eigen::Vector2d(sum / count);
+}
+
+struct ItemStyle {
+  bool selected = false, with_handles = false;
+  OverlayRole role = OverlayRole::kSketch;
+};
+
+void addEdges(Overlay& overlay, const SketchItem& item, const vision::Snapshot& snapshot, OverlayRole role) {
+  const int count = vision::vertexCount(item.kind);
+  for (int vertex = 1; vertex < count; ++vertex) {
+    // Line and plane run from vertex to vertex; a triad's edges all leave vertex 0.
+    const int from = item.kind == vision::FeatureKind::kTriad ? 0 : vertex - 1;
+    const SketchPick* a = item.pick(snapshot.id, from);
+    const SketchPick* b = item.pick(snapshot.id, vertex);
+    if (a == nullptr || b == nullptr) continue;
+    const OverlayRole edge = a->placed() && b->placed() ? role : OverlayRole::kUnplaced;
+    overlay.shapes.push_back({OverlayShape::Kind::kPolyline, edge,
+                              pictureOfEdge(snapshot.view.camera, a->pixel, b->pixel), {}});
+  }
+}
+
+void addHandles(Overlay& overlay, const SketchItem& item, SnapshotId snapshot, const ItemStyle& style,
+                const OverlayOptions& options) {
+  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+    const SketchPick* pick = item.pick(snapshot, vertex);
+    if (pick == nullptr) continue;
+    const bool active = item.id == options.active_item && vertex == options.active_vertex &&
+                        snapshot == options.active_snapshot;
+    OverlayRole role = style.with_handles ? OverlayRole::kHandle : style.role;
+    if (!pick->placed()) role = OverlayRole::kUnplaced;
+    if (active) role = OverlayRole::kActiveHandle;
+    addMarker(overlay, role, pick->pixel);
+  }
+}
+
+void addItem(Overlay& overlay, const Document& document, const SketchItem& item, const vision::Snapshot& snapshot,
+             const OverlayOptions& options, bool is_draft) {
+  const Measurement measured = is_draft ? document.measure(item) : document.measurement(item.id);
+  ItemStyle style;
+  style.selected = document.selection().contains(item.id) || is_draft;
+  style.with_handles = style.selected && !item.locked;
+  style.role = style.selected ? OverlayRole::kSelected : OverlayRole::kSketch;
+  if (item.picks.count(snapshot.id) == 0) {
+    if (measured.feature && measured.feature->parent == snapshot.view.parent) {
+      vision::addFeature(*measured.feature, snapshot.view, style.role, &overlay);
+    }
+    return;
+  }
+  if (options.ellipses && measured.feature) addEllipses(overlay, snapshot.view, *measured.feature);
+  const std::size_t first = overlay.shapes.size();
+  addEdges(overlay, item, snapshot, style.role);
+  addHandles(overlay, item, snapshot.id, style, options);
+  if (options.labels && item.placedIn(snapshot.id)) {
+    addText(overlay, labelRole(measured), labelPlace(item, snapshot.id), labelOf(item, measured));
+  }
+  if (!item.colour) return;
+  for (std::size_t i = first; i < overlay.shapes.size(); ++i) {
+    overlay.shapes[i].colour_rgb = static_cast<int>(*item.colour & 0xffffffU);
+  }
+}
+
+void addPlan(Overlay& overlay, const vision::View& view, const OverlayOptions& options) {
+  if (!options.path || options.path_points == nullptr || options.path_points->size() < 2) return;
+  vision::addPath(*options.path_points, view, OverlayRole::kPath, &overlay);
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> pictureOfEdge(const vision::CameraModel& camera, const Eigen::Vector2d& a,
+                                           const Eigen::Vector2d& b) {
+  if (!camera.hasDistortion()) return {a, b};
+  const auto from = camera.normalisedOfPixel(a), to = camera.normalisedOfPixel(b);
+  if (!from || !to) return {a, b};
+  // Sag falls with the square of the number of pieces: 16 leave < 0.1 px of what a wide lens bends.
+  constexpr int kPieces = 16;
+  std::vector<Eigen::Vector2d> points{a};
+  for (int i = 1; i < kPieces; ++i) {
+    const double s = static_cast<double>(i) / kPieces;
+    points.push_back(camera.pixelOfNormalised((1 - s) * *from + s * *to));
+  }
+  points.push_back(b);
+  return points;
+}
+
+Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptions& options) {
+  Overlay overlay;
+  const SnapshotPtr snapshot = document.snapshot(id);
+  if (!snapshot) return overlay;
+  addPlan(overlay, snapshot->view, options);
+  for (const auto& item : document.items()) {
+    if (options.draft != nullptr && options.draft->id == item.id) continue;
+    if (!item.hidden) addItem(overlay, document, item, *snapshot, options, false);
+  }
+  // Last, so that what is being worked on lies on top.
+  if (options.draft != nullptr) addItem(overlay, document, *options.draft, *snapshot, options, true);
+  return overlay;
+}
+
+Overlay buildOverlay(const Document& document, const vision::View& view, const OverlayOptions& options) {
+  Overlay overlay;
+  addPlan(overlay, view, options);
+  for (const auto& item : document.items()) {
+    const Measurement& measured = document.measurement(item.id);
+    if (item.hidden || !measured.feature || measured.feature->parent != view.parent) continue;
+    const bool selected = document.selection().contains(item.id);
+    vision::addFeature(*measured.feature, view, selected ? OverlayRole::kSelected : OverlayRole::kSketch, &overlay);
+    if (!options.labels) continue;
+    const auto pixel = view.project(measured.feature->vertices.front().xyz);
+    if (pixel && view.camera.containsPixel(*pixel)) {
+      addText(overlay, labelRole(measured), *pixel, labelOf(item, measured));
+    }
+  }
+  return overlay;
+}
+
+std::vector<Eigen::Vector3d> planPath(const planning::Workcell& workcell, const planning::Plan& plan, double step_s) {
+  std::vector<Eigen::Vector3d> path;
+  if (!plan.ok() || plan.trajectory.empty() || !workcell.model) return path;
+  const auto tip = workcell.model->linkIndex(workcell.arm.tip_link);
+  if (!tip || plan.start_configuration.size() != workcell.model->dof()) return path;
+  Eigen::VectorXd q = plan.start_configuration;
+  const double duration = plan.trajectory.duration();
+  const int steps = std::clamp(static_cast<int>(std::ceil(duration / step_s)), 1, 20000);
+  JointState state;
+  state.names = plan.trajectory.joint_names;
+  for (int i = 0; i <= steps; ++i) {
+    state.positions = plan.trajectory.sample(duration * i / steps).positions;
+    workcell.model->assign(state, q);
+    path.push_back(workcell.model->forward(q, *tip).translation());
+  }
+  return path;
+}
+
+}  // namespace longarm::session

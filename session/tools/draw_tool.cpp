@@ -1,0 +1,336 @@
+#include "session/tools/draw_tool.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "session/commands/sketch_commands.h"
+#include "session/tools/hit_test.h"
+
+namespace longarm::session {
+
+namespace {
+
+constexpr PaneSide kSides[] = {PaneSide::kLeft, PaneSide::kRight};
+
+ToolReply consumed(bool redraw = true) {
+  ToolReply reply;
+  reply.consumed = true;
+  reply.redraw = redraw;
+  return reply;
+}
+
+Eigen::Vector2d sizeOf(const vision::Snapshot& snapshot) {
+  const int width = snapshot.view.camera.width > 0 ? snapshot.view.camera.width : snapshot.image.cols;
+  const int height = snapshot.view.camera.height > 0 ? snapshot.view.camera.height : snapshot.image.rows;
+  return {std::max(width - 1, 0), std::max(height - 1, 0)};
+}
+
+const char* sideWord(PaneSide side) { return side == PaneSide::kLeft ? "left" : "right"; }
+
+}  // namespace
+
+void DrawTool::activate(const Document& document) {
+  m_document = &document;
+  m_id = document.nextFeatureId();
+  deactivate();
+  refresh();
+}
+
+void DrawTool::deactivate() {
+  m_filter.cancel();
+  m_drag.cancel();
+  m_grab.reset();
+  m_active = {};
+  m_state = State::kNoPicture;
+}
+
+void DrawTool::refresh() {
+  const SketchItem* stored = m_document->item(m_id);
+  if (stored != nullptr) {
+    m_item = *stored;
+  } else {
+    m_item = SketchItem{};
+    m_item.id = m_id;
+    m_item.kind = m_kind;
+    m_item.name = m_document->freeName(m_kind);
+  }
+  bool any = false;
+  for (const PaneSide side : kSides) {
+    const SnapshotPtr picture = m_document->paneSnapshot(side);
+    if (!picture) continue;
+    any = true;
+    for (int vertex = 0; vertex < vision::vertexCount(m_kind); ++vertex) {
+      if (m_item.pick(picture->id, vertex) != nullptr) continue;
+      const Eigen::Vector2d place = startPlace(vertex).cwiseProduct(sizeOf(*picture));
+      m_item.setPick(picture->id, vertex, {place, PickState::kUnplaced});
+    }
+  }
+  if (m_state == State::kNoPicture && any) m_state = State::kPlacing;
+  if (!any) m_state = State::kNoPicture;
+  const std::vector<Handle> all = handles();
+  if (std::find(all.begin(), all.end(), m_active) == all.end()) {
+    const auto next = nextUnplaced();
+    m_active = next ? *next : Handle{};
+  }
+}
+
+std::vector<Handle> DrawTool::handles() const {
+  std::vector<Handle> all;
+  for (const PaneSide side : kSides) {
+    const SnapshotId id = m_document->paneSnapshotId(side);
+    if (side == PaneSide::kRight && id == m_document->paneSnapshotId(PaneSide::kLeft)) continue;
+    for (const int vertex : verticesIn(m_item, id)) all.push_back({m_id, vertex, id, side});
+  }
+  return all;
+}
+
+bool DrawTool::isPlaced(const Handle& handle) const {
+  const SketchPick* pick = m_item.pick(handle.snapshot, handle.vertex);
+  return pick != nullptr && pick->placed();
+}
+
+std::optional<Handle> DrawTool::nextUnplaced(PaneSide side) const {
+  const SnapshotId id = m_document->paneSnapshotId(side);
+  for (const int vertex : verticesIn(m_item, id)) {
+    const Handle handle{m_id, vertex, id, side};
+    if (!isPlaced(handle)) return handle;
+  }
+  return std::nullopt;
+}
+
+std::optional<Handle> DrawTool::nextUnplaced() const {
+  const PaneSide first = m_active.valid() ? m_active.side : PaneSide::kLeft;
+  if (const auto here = nextUnplaced(first)) return here;
+  return nextUnplaced(otherSide(first));
+}
+
+bool DrawTool::complete(const SketchItem& item) const {
+  const SnapshotId left = m_document->paneSnapshotId(PaneSide::kLeft);
+  const SnapshotId right = m_document->paneSnapshotId(PaneSide::kRight);
+  return left.valid() && right.valid() && left != right && item.placedIn(left) && item.placedIn(right);
+}
+
+ToolReply DrawTool::commit(SketchItem after, const std::string& label, const std::string& merge_key) {
+  ToolReply reply = consumed();
+  const SketchItem* stored = m_document->item(m_id);
+  if (stored != nullptr && *stored == after) return reply;
+  if (complete(after)) {
+    reply.finished = true;
+    reply.selection = Selection::of(m_id);
+  }
+  reply.command = stored == nullptr ? addItem(std::move(after))
+                                    : replaceItem(*m_document, std::move(after), label, merge_key);
+  return reply;
+}
+
+ToolReply DrawTool::onPointer(const vision::PointerEvent& event) {
+  if (m_document == nullptr || m_state == State::kNoPicture) return {};
+  const auto gesture = m_filter.feed(event);
+  if (!gesture) {
+    ToolReply reply;
+    reply.consumed = m_state == State::kGrabbed || m_state == State::kDragging;
+    return reply;
+  }
+  switch (gesture->kind) {
+    case GestureKind::kHover: return onHover(*gesture);
+    case GestureKind::kPress: return onPress(*gesture);
+    case GestureKind::kClick: return onClick(*gesture);
+    case GestureKind::kDragBegin:
+    case GestureKind::kDragMove: return onDrag(*gesture);
+    case GestureKind::kDragEnd: return onDragEnd(*gesture);
+    case GestureKind::kDoubleClick: return consumed(false);
+  }
+  return {};
+}
+
+ToolReply DrawTool::onHover(const Gesture& gesture) {
+  if (m_active.valid() && (m_active.side == gesture.side || !isPlaced(m_active))) return {};
+  const auto next = nextUnplaced(gesture.side);
+  if (!next) return {};
+  m_active = *next;
+  ToolReply reply;
+  reply.redraw = true;
+  return reply;
+}
+
+ToolReply DrawTool::onPress(const Gesture& gesture) {
+  m_drag.cancel();
+  m_grab.reset();
+  m_state = State::kPlacing;
+  if (!m_document->paneSnapshot(gesture.side)) {
+    m_filter.cancel();
+    return {};
+  }
+  if (const auto hit = hitItem(*m_document, m_item, gesture.side, gesture.pixel, gesture.tolerance_px)) {
+    m_grab = hit->handle;
+  }
+  m_state = State::kGrabbed;
+  return consumed(false);
+}
+
+ToolReply DrawTool::onClick(const Gesture& gesture) {
+  if (m_state != State::kGrabbed) return {};
+  m_state = State::kPlacing;
+  if (m_grab && m_grab->valid() && isPlaced(*m_grab)) {
+    m_active = *m_grab;
+    return consumed();
+  }
+  const bool active_here = m_active.valid() && m_active.side == gesture.side && !isPlaced(m_active);
+  const auto handle = active_here ? std::optional(m_active) : nextUnplaced(gesture.side);
+  if (!handle) return consumed(false);
+  m_active = *handle;
+  const PickEditor editor(*m_document, m_item, handle->snapshot, {handle->vertex});
+  return commit(editor.moveTo({gesture.pixel}, gesture.modifiers.control).item, "Place '" + m_item.name + "'");
+}
+
+bool DrawTool::beginDrag(const Gesture& gesture) {
+  if (m_grab) {
+    m_drag.begin(*m_document, m_item, *m_grab);
+    return true;
+  }
+  const auto first = nextUnplaced(gesture.side);
+  if (!first) return false;
+  for (int vertex = first->vertex + 1; vertex < vision::vertexCount(m_kind); ++vertex) {
+    if (isPlaced({m_id, vertex, first->snapshot, first->side})) continue;
+    m_drag.beginStroke(*m_document, m_item, *first, vertex, gesture.press_pixel);
+    return true;
+  }
+  m_drag.beginAtPointer(*m_document, m_item, *first);
+  return true;
+}
+
+ToolReply DrawTool::onDrag(const Gesture& gesture) {
+  if (m_state == State::kGrabbed) {
+    if (!beginDrag(gesture)) {
+      m_filter.cancel();
+      m_state = State::kPlacing;
+      return consumed(false);
+    }
+    m_active = m_drag.handle();
+    m_state = State::kDragging;
+  }
+  if (m_state != State::kDragging) return {};
+  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  return consumed();
+}
+
+ToolReply DrawTool::onDragEnd(const Gesture& gesture) {
+  if (m_state != State::kDragging) return {};
+  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  m_state = State::kPlacing;
+  return commit(m_drag.finish(), "Place '" + m_item.name + "'");
+}
+
+ToolReply DrawTool::onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
+  if (key == vision::SketchKey::kEscape) return cancel();
+  if (m_document == nullptr || m_state == State::kNoPicture) return {};
+  if (m_state != State::kPlacing) return consumed(false);
+  switch (key) {
+    case vision::SketchKey::kDelete: return onDelete();
+    case vision::SketchKey::kTab: return onTab(modifiers.shift);
+    case vision::SketchKey::kReturn: return onReturn();
+    default: return onArrow(key, modifiers);
+  }
+}
+
+ToolReply DrawTool::onArrow(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
+  if (!m_active.valid()) return {};
+  PickEdit edit = nudged(*m_document, m_item, m_active, key, modifiers);
+  if (edit.item == m_item) return consumed();
+  return commit(std::move(edit.item), "Nudge '" + m_item.name + "'", nudgeKey(m_active));
+}
+
+ToolReply DrawTool::onReturn() {
+  if (!m_active.valid() || isPlaced(m_active)) {
+    const auto next = nextUnplaced();
+    if (!next) return consumed();
+    m_active = *next;
+    return consumed();
+  }
+  const PickEditor editor(*m_document, m_item, m_active.snapshot, {m_active.vertex});
+  return commit(editor.moveBy(Eigen::Vector2d::Zero(), false).item, "Place '" + m_item.name + "'");
+}
+
+ToolReply DrawTool::onTab(bool backwards) {
+  const std::vector<Handle> all = handles();
+  if (all.empty()) return {};
+  const auto here = std::find(all.begin(), all.end(), m_active);
+  const std::size_t n = all.size(), at = static_cast<std::size_t>(here - all.begin());
+  m_active = here == all.end() ? all.front() : all[(at + (backwards ? n - 1 : 1)) % n];
+  return consumed();
+}
+
+ToolReply DrawTool::onDelete() {
+  ToolReply reply = consumed();
+  reply.command = removeItems(*m_document, {m_id});
+  return reply;
+}
+
+ToolReply DrawTool::cancel() {
+  m_filter.cancel();
+  ToolReply reply = consumed();
+  if (m_state == State::kGrabbed || m_state == State::kDragging) {
+    m_drag.cancel();
+    m_state = State::kPlacing;
+    return reply;
+  }
+  reply.finished = true;
+  return reply;
+}
+
+void DrawTool::documentChanged() {
+  if (m_document == nullptr) return;
+  const bool held = m_state == State::kDragging || m_state == State::kGrabbed;
+  const bool was_stored = m_drag.active() && m_document->item(m_id) == nullptr && m_item.placedCount(0) > 0;
+  const bool picture_left = m_drag.active() &&
+                            m_document->paneSnapshotId(m_drag.handle().side) != m_drag.handle().snapshot;
+  if (held && (was_stored || picture_left)) {
+    m_filter.cancel();
+    m_drag.cancel();
+    m_state = State::kPlacing;
+  }
+  refresh();
+}
+
+const SketchItem* DrawTool::draft() const {
+  if (m_document == nullptr || m_state == State::kNoPicture) return nullptr;
+  return m_drag.active() ? &m_drag.item() : &m_item;
+}
+
+vision::Overlay DrawTool::preview(PaneSide side) const {
+  const SketchItem* item = draft();
+  if (item == nullptr) return {};
+  return handlePreview(*m_document, *item, m_drag.active() ? m_drag.handle() : m_active, side);
+}
+
+std::optional<LiveMeasure> DrawTool::liveMeasure() const {
+  const SketchItem* item = draft();
+  if (item == nullptr || !m_active.valid()) return std::nullopt;
+  return liveMeasureOf(*m_document, *item, m_active, m_drag.active() ? &m_drag.edit() : nullptr);
+}
+
+std::string DrawTool::hint() const {
+  if (m_document == nullptr || m_state == State::kNoPicture) return "Take a pair of snapshots first, then mark it in both.";
+  if (!m_drag.active()) return placingHint();
+  if (m_drag.edit().released) return "Off the epipolar curve: the miss shows how far. Let go of Control to return to it.";
+  if (m_drag.edit().on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
+  return "Drag onto the feature; Esc cancels.";
+}
+
+std::string DrawTool::placingHint() const {
+  const std::string kind = vision::toString(m_kind);
+  const auto next = nextUnplaced();
+  if (!next) {
+    const bool same = m_document->paneSnapshotId(PaneSide::kLeft) == m_document->paneSnapshotId(PaneSide::kRight);
+    return same ? "Both panes show the same picture. Show another one to mark the " + kind + " in it too."
+                : "Put a second picture into the other pane to mark the " + kind + " in it too.";
+  }
+  const std::string where = std::string(" in the ") + sideWord(next->side) + " picture";
+  const bool constrained = constrainingSnapshot(*m_document, m_item, next->snapshot, next->vertex).valid();
+  if (constrained) {
+    return "Slide " + vertexName(next->vertex) + where + " along its curve onto the same spot; Control leaves the curve.";
+  }
+  return "Drag or click " + vertexName(next->vertex) + where + " onto the feature. Either picture may come first; Esc ends.";
+}
+
+}  // namespace longarm::session

@@ -1,0 +1,241 @@
+#include "session/tools/pick_editor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/require.h"
+#include "core/text.h"
+#include "session/document/feature_rows.h"
+#include "vision/sketch/overlay.h"
+#include "vision/stereo/triangulate.h"
+
+namespace longarm::session {
+
+namespace {
+
+Eigen::Vector2d keptOnPicture(const vision::Snapshot& snapshot, const Eigen::Vector2d& pixel) {
+  const int width = snapshot.view.camera.width > 0 ? snapshot.view.camera.width : snapshot.image.cols;
+  const int height = snapshot.view.camera.height > 0 ? snapshot.view.camera.height : snapshot.image.rows;
+  if (width <= 0 || height <= 0) return pixel;
+  return {std::clamp(pixel.x(), 0.0, width - 1.0), std::clamp(pixel.y(), 0.0, height - 1.0)};
+}
+
+bool inAPane(const Document& document, SnapshotId id) {
+  return document.paneSnapshotId(PaneSide::kLeft) == id || document.paneSnapshotId(PaneSide::kRight) == id;
+}
+
+/// Unit direction of the piece of the curve that is nearest to the pixel.
+Eigen::Vector2d tangentNear(const vision::EpipolarCurve& curve, const Eigen::Vector2d& pixel) {
+  Eigen::Vector2d best = Eigen::Vector2d::Zero();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    const Eigen::Vector2d a = curve.points[i - 1].pixel, ab = curve.points[i].pixel - a;
+    if (ab.squaredNorm() == 0) continue;
+    const double s = std::clamp((pixel - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+    const double distance = (a + s * ab - pixel).squaredNorm();
+    if (distance < nearest) {
+      nearest = distance;
+      best = ab.normalized();
+    }
+  }
+  return best;
+}
+
+std::optional<vision::EpipolarCurve> curveBetween(const vision::Snapshot& from, const Eigen::Vector2d& pixel,
+                                                  const vision::Snapshot& to) {
+  auto curve = vision::epipolarCurve(from.view, pixel, to.view);
+  if (!curve || curve->points.empty()) return std::nullopt;
+  return std::move(*curve);
+}
+
+}  // namespace
+
+SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex) {
+  const SketchPick* own = item.pick(snapshot, vertex);
+  const bool own_is_free = own != nullptr && own->state == PickState::kFree;
+  SnapshotId best;
+  int best_score = -1;
+  for (const auto& [id, list] : item.picks) {
+    const SketchPick* other = item.pick(id, vertex);
+    if (id == snapshot || other == nullptr || !other->placed() || !document.snapshot(id)) continue;
+    if (own_is_free && other->state != PickState::kFree) return {};
+    const int score = (inAPane(document, id) ? 2 : 0) + (other->state == PickState::kFree ? 1 : 0);
+    if (score > best_score) {
+      best_score = score;
+      best = id;
+    }
+  }
+  return best;
+}
+
+std::optional<vision::EpipolarCurve> constrainingCurve(const Document& document, const SketchItem& item,
+                                                       SnapshotId snapshot, int vertex) {
+  const SnapshotId from = constrainingSnapshot(document, item, snapshot, vertex);
+  const SnapshotPtr source = document.snapshot(from), target = document.snapshot(snapshot);
+  if (!source || !target) return std::nullopt;
+  return curveBetween(*source, item.pick(from, vertex)->pixel, *target);
+}
+
+PickEditor::PickEditor(const Document& document, SketchItem item, SnapshotId snapshot, std::vector<int> vertices)
+    : m_document(document), m_before(std::move(item)), m_snapshot(snapshot), m_vertices(std::move(vertices)) {
+  LONGARM_REQUIRE(!m_vertices.empty(), "no vertex to move");
+  for (const int vertex : m_vertices) {
+    LONGARM_REQUIRE(m_before.pick(snapshot, vertex) != nullptr, "no pick to move");
+    if (auto curve = constrainingCurve(document, m_before, snapshot, vertex)) m_curves[vertex] = std::move(*curve);
+  }
+}
+
+PickEdit PickEditor::moveTo(const std::vector<Eigen::Vector2d>& wanted, bool release) const {
+  LONGARM_REQUIRE(wanted.size() == m_vertices.size(), "one pixel per vertex");
+  const SnapshotPtr picture = m_document.snapshot(m_snapshot);
+  PickEdit edit;
+  edit.item = m_before;
+  if (!picture) return edit;
+  for (std::size_t i = 0; i < m_vertices.size(); ++i) {
+    const int vertex = m_vertices[i];
+    const bool held = constrainingSnapshot(m_document, m_before, m_snapshot, vertex).valid();
+    const auto curve = m_curves.find(vertex);
+    SketchPick pick{keptOnPicture(*picture, wanted[i]), held ? PickState::kReleased : PickState::kFree};
+    if (i == 0) edit.raw = pick.pixel;
+    if (held && !release && curve != m_curves.end()) {
+      const auto nearest = curve->second.nearest(pick.pixel);
+      if (nearest) {
+        pick = {nearest->pixel, PickState::kConstrained};
+        if (i == 0) edit.depth = nearest->depth;
+      }
+    }
+    edit.item.setPick(m_snapshot, vertex, pick);
+    follow(edit.item, vertex);
+    if (i != 0) continue;
+    edit.constrained = pick.pixel;
+    edit.on_curve = pick.state == PickState::kConstrained;
+    edit.released = pick.state == PickState::kReleased;
+  }
+  return edit;
+}
+
+PickEdit PickEditor::moveBy(const Eigen::Vector2d& travel, bool release) const {
+  std::vector<Eigen::Vector2d> wanted;
+  for (const int vertex : m_vertices) wanted.push_back(m_before.pick(m_snapshot, vertex)->pixel + travel);
+  return moveTo(wanted, release);
+}
+
+PickEdit PickEditor::nudge(const Eigen::Vector2d& direction, double step_px, bool release) const {
+  const auto curve = m_curves.find(m_vertices.front());
+  if (curve == m_curves.end() || release) return moveBy(step_px * direction, release);
+  const Eigen::Vector2d tangent = tangentNear(curve->second, m_before.pick(m_snapshot, m_vertices.front())->pixel);
+  const double along = tangent.dot(direction);
+  // A key across the curve asks for what the constraint forbids: nothing moves.
+  if (std::abs(along) < 0.05) return moveBy(Eigen::Vector2d::Zero(), false);
+  return moveBy((along > 0 ? step_px : -step_px) * tangent, false);
+}
+
+void PickEditor::follow(SketchItem& item, int vertex) const {
+  const SketchPick moved = *item.pick(m_snapshot, vertex);
+  const SnapshotPtr source = m_document.snapshot(m_snapshot);
+  for (const auto& [id, list] : m_before.picks) {
+    const SketchPick* old = m_before.pick(id, vertex);
+    const SnapshotPtr target = m_document.snapshot(id);
+    if (id == m_snapshot || old == nullptr || !target) continue;
+    const bool slid = old->state == PickState::kConstrained && moved.state == PickState::kFree;
+    if (!slid && old->state != PickState::kUnplaced) continue;
+    const auto curve = curveBetween(*source, moved.pixel, *target);
+    if (!curve) continue;
+    if (const auto nearest = curve->nearest(old->pixel)) item.setPick(id, vertex, {nearest->pixel, old->state});
+  }
+}
+
+namespace {
+
+void fillVertex(LiveMeasure& live, const Eigen::Vector3d& xyz, const Eigen::Matrix3d& covariance, double miss) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+  live.xyz = xyz;
+  live.plus_minus = plusMinus95(std::sqrt(std::max(0.0, axes.eigenvalues()(2))));
+  live.miss = miss;
+}
+
+void measureVertexAlone(LiveMeasure& live, const Document& document, const SketchItem& item, int vertex) {
+  std::vector<vision::Sighting> sightings;
+  for (const auto& [id, list] : item.picks) {
+    const SketchPick* pick = item.pick(id, vertex);
+    const SnapshotPtr picture = document.snapshot(id);
+    if (pick == nullptr || !pick->placed() || !picture) continue;
+    sightings.push_back({&picture->view, pick->pixel, 0});
+  }
+  if (sightings.size() < 2) return;
+  const auto point = vision::triangulate(sightings);
+  if (!point) {
+    live.reason = point.error().message;
+    return;
+  }
+  fillVertex(live, point->xyz, point->covariance, point->miss_m);
+  live.warnings = point->warnings;
+}
+
+}  // namespace
+
+LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, const Handle& handle,
+                          const PickEdit* edit) {
+  LiveMeasure live;
+  live.handle = handle;
+  const SketchPick* pick = item.pick(handle.snapshot, handle.vertex);
+  if (pick != nullptr) {
+    live.raw = live.constrained = pick->pixel;
+    live.on_curve = pick->state == PickState::kConstrained;
+    live.released = pick->state == PickState::kReleased;
+  }
+  if (edit != nullptr) live.raw = edit->raw;
+  const Measurement measurement = document.measure(item);
+  live.reason = measurement.reason;
+  if (measurement.feature) {
+    const auto& vertex = measurement.feature->vertices[static_cast<std::size_t>(handle.vertex)];
+    fillVertex(live, vertex.xyz, vertex.covariance, vertex.miss_m);
+    live.warnings = measurement.feature->warnings;
+    if (item.kind == vision::FeatureKind::kLine) {
+      live.length = measurement.feature->length();
+      live.length_plus_minus = plusMinus95(measurement.feature->lengthSigma());
+    }
+  } else {
+    measureVertexAlone(live, document, item, handle.vertex);
+  }
+  const SnapshotPtr from = document.snapshot(constrainingSnapshot(document, item, handle.snapshot, handle.vertex));
+  if (live.xyz && from) live.depth = (from->view.X_WC.inverse() * *live.xyz).z();
+  if (live.xyz && !live.length) live.reason.clear();
+  return live;
+}
+
+std::string LiveMeasure::text() const {
+  if (!xyz) return reason;
+  std::string line = "x " + formatFixed(xyz->x() * 1000, 1) + "  y " + formatFixed(xyz->y() * 1000, 1) + "  z " +
+                     formatFixed(xyz->z() * 1000, 1) + " \u00b1 " + formatFixed(plus_minus * 1000, 1) +
+                     " mm   miss " + formatFixed(miss * 1000, 1) + " mm";
+  if (length) line += "   length " + millimetreText(*length, *length_plus_minus);
+  return line;
+}
+
+vision::Overlay handlePreview(const Document& document, const SketchItem& item, const Handle& handle, PaneSide side) {
+  vision::Overlay overlay;
+  const SnapshotId here = document.paneSnapshotId(side);
+  if (!handle.valid() || !here.valid()) return overlay;
+  const auto curve = constrainingCurve(document, item, here, handle.vertex);
+  if (!curve) return overlay;
+  vision::addEpipolarCurve(*curve, &overlay);
+  const SketchPick* pick = item.pick(here, handle.vertex);
+  if (pick == nullptr || pick->state != PickState::kReleased) return overlay;
+  const auto nearest = curve->nearest(pick->pixel);
+  const LiveMeasure live = liveMeasureOf(document, item, handle);
+  vision::OverlayShape line{vision::OverlayShape::Kind::kPolyline, vision::OverlayRole::kMiss,
+                            {pick->pixel, nearest->pixel}, {}};
+  overlay.shapes.push_back(std::move(line));
+  if (live.xyz) {
+    overlay.shapes.push_back({vision::OverlayShape::Kind::kText, vision::OverlayRole::kMiss, {pick->pixel},
+                              "miss " + millimetreText(live.miss)});
+  }
+  return overlay;
+}
+
+}  // namespace longarm::session

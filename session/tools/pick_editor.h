@@ -1,0 +1,74 @@
+#pragma once
+
+/// @file
+/// What becomes of an item when picks of one picture are asked for elsewhere: the epipolar constraint lives here.
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "session/document/document.h"
+#include "session/tools/sketch_tool.h"
+#include "vision/stereo/epipolar.h"
+
+namespace longarm::session {
+
+/// The item as it would be, and what held the first of the moved vertices.
+struct PickEdit {
+  SketchItem item;
+  Eigen::Vector2d raw = Eigen::Vector2d::Zero();          ///< Asked for, kept on the picture [raw px].
+  Eigen::Vector2d constrained = Eigen::Vector2d::Zero();  ///< Granted [raw px].
+  bool on_curve = false;
+  bool released = false;
+  std::optional<double> depth;                            ///< z in the camera of the constraining pick [m].
+};
+
+/// The picture whose pick of this vertex constrains the one in `snapshot`, or an invalid id.  The first picture of
+/// a vertex is free and constrains the others; of several, the one in a pane wins.
+SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex);
+
+/// Curve that the pick of this vertex in `snapshot` belongs to; empty when nothing constrains it or no part is seen.
+std::optional<vision::EpipolarCurve> constrainingCurve(const Document& document, const SketchItem& item,
+                                                       SnapshotId snapshot, int vertex);
+
+/// Moves picks of some vertices in one picture.  Borrows the document, copies the item; a drag keeps one editor, so
+/// that the curves that hold its handles are computed once.
+///
+/// A pick that nothing constrains goes where it is asked (kFree), and picks of the same vertex that were slid along
+/// its curve, or not placed yet, follow to the nearest point of the new curve.  A pick that is constrained goes to
+/// the nearest point of its curve, or, released, where it is asked (kReleased).  All picks stay on their picture.
+class PickEditor {
+ public:
+  /// @pre the snapshot is in the document and the item has a pick there of every vertex given
+  PickEditor(const Document& document, SketchItem item, SnapshotId snapshot, std::vector<int> vertices);
+
+  const SketchItem& before() const { return m_before; }
+  SnapshotId snapshot() const { return m_snapshot; }
+  const std::vector<int>& vertices() const { return m_vertices; }
+
+  /// @param wanted One raw pixel per vertex given to the constructor.
+  PickEdit moveTo(const std::vector<Eigen::Vector2d>& wanted, bool release) const;
+  /// All of them by the same way from where they were.
+  PickEdit moveBy(const Eigen::Vector2d& travel, bool release) const;
+  /// One key step of `step_px` pixels: along the curve when the first vertex is constrained and not released, else
+  /// in the direction given (a unit vector along u or v).
+  PickEdit nudge(const Eigen::Vector2d& direction, double step_px, bool release) const;
+
+ private:
+  void follow(SketchItem& item, int vertex) const;
+
+  const Document& m_document;
+  SketchItem m_before;
+  SnapshotId m_snapshot;
+  std::vector<int> m_vertices;
+  std::map<int, vision::EpipolarCurve> m_curves;   // Of constrained vertices.
+};
+
+/// Numbers of a vertex of an item value; `edit` adds where it was asked for.
+LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, const Handle& handle,
+                          const PickEdit* edit = nullptr);
+
+/// Epipolar curve, depth ticks and miss line of the handle's vertex in the picture of this pane.
+vision::Overlay handlePreview(const Document& document, const SketchItem& item, const Handle& handle, PaneSide side);
+
+}  // namespace longarm::session

@@ -1,0 +1,268 @@
+#include "session/tools/select_tool.h"
+
+#include <algorithm>
+
+#include "session/commands/sketch_commands.h"
+
+namespace longarm::session {
+
+namespace {
+
+ToolReply consumed(bool redraw = true) {
+  ToolReply reply;
+  reply.consumed = true;
+  reply.redraw = redraw;
+  return reply;
+}
+
+std::string quoted(const SketchItem& item) { return "'" + item.name + "'"; }
+
+}  // namespace
+
+void SelectTool::activate(const Document& document) {
+  m_document = &document;
+  deactivate();
+}
+
+void SelectTool::deactivate() {
+  m_filter.cancel();
+  m_drag.cancel();
+  m_grab.reset();
+  m_active = {};
+  m_state = State::kIdle;
+  m_note.clear();
+}
+
+bool SelectTool::exists(const Handle& handle) const {
+  const SketchItem* item = m_document == nullptr ? nullptr : m_document->item(handle.item);
+  return item != nullptr && !item->hidden && item->pick(handle.snapshot, handle.vertex) != nullptr;
+}
+
+void SelectTool::setActiveHandle(const Handle& handle) {
+  if (exists(handle)) m_active = handle;
+}
+
+ToolReply SelectTool::onPointer(const vision::PointerEvent& event) {
+  if (m_document == nullptr) return {};
+  const auto gesture = m_filter.feed(event);
+  if (!gesture) {
+    ToolReply reply;
+    reply.consumed = m_state != State::kIdle;
+    return reply;
+  }
+  switch (gesture->kind) {
+    case GestureKind::kHover: return onHover(*gesture);
+    case GestureKind::kPress: return onPress(*gesture);
+    case GestureKind::kClick: return onClick(*gesture);
+    case GestureKind::kDragBegin:
+    case GestureKind::kDragMove: return onDrag(*gesture);
+    case GestureKind::kDragEnd: return onDragEnd(*gesture);
+    case GestureKind::kDoubleClick: return {};
+  }
+  return {};
+}
+
+ToolReply SelectTool::onHover(const Gesture& gesture) {
+  const auto hit = hitTest(*m_document, gesture.side, gesture.pixel, gesture.tolerance_px);
+  std::string note;
+  if (hit) {
+    const SketchItem& item = *m_document->item(hit->handle.item);
+    note = hit->handle.valid() ? "Drag the handle of " + quoted(item) + ", or click to select it."
+                               : "Drag " + quoted(item) + " as a whole, or click to select it.";
+  }
+  ToolReply reply;
+  reply.redraw = note != m_note;
+  m_note = note;
+  return reply;
+}
+
+ToolReply SelectTool::onPress(const Gesture& gesture) {
+  m_drag.cancel();
+  m_state = State::kIdle;
+  m_note.clear();
+  m_grab = hitTest(*m_document, gesture.side, gesture.pixel, gesture.tolerance_px);
+  if (!m_grab) return {};
+  m_state = State::kGrabbed;
+  return consumed(false);
+}
+
+ToolReply SelectTool::onClick(const Gesture& gesture) {
+  const bool grabbed = m_state == State::kGrabbed && m_grab && m_document->item(m_grab->handle.item) != nullptr;
+  m_state = State::kIdle;
+  ToolReply reply = consumed();
+  const bool keep = gesture.modifiers.control || gesture.modifiers.shift;
+  if (!grabbed) {
+    reply.consumed = false;
+    if (!keep) {
+      m_active = {};
+      reply.selection = Selection{};
+    }
+    return reply;
+  }
+  const FeatureId id = m_grab->handle.item;
+  Selection selection = keep ? m_document->selection() : Selection{};
+  if (gesture.modifiers.control && selection.contains(id)) {
+    selection.items.erase(id);
+  } else {
+    selection.items.insert(id);
+    selection.primary = id;
+  }
+  m_active = m_grab->handle.valid() ? m_grab->handle : Handle{};
+  reply.selection = std::move(selection);
+  return reply;
+}
+
+ToolReply SelectTool::onDrag(const Gesture& gesture) {
+  if (m_state == State::kIdle) return {};
+  if (m_state == State::kGrabbed) {
+    const SketchItem* item = m_grab ? m_document->item(m_grab->handle.item) : nullptr;
+    if (item == nullptr || item->locked) {
+      m_state = State::kIdle;
+      m_filter.cancel();
+      if (item != nullptr) m_note = quoted(*item) + " is locked. Unlock it in the list to move it.";
+      return consumed();
+    }
+    m_drag.begin(*m_document, *item, m_grab->handle);
+    m_active = m_drag.handle();
+    m_state = State::kDragging;
+  }
+  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  ToolReply reply = consumed();
+  if (!m_document->selection().contains(m_active.item)) reply.selection = Selection::of(m_active.item);
+  return reply;
+}
+
+ToolReply SelectTool::onDragEnd(const Gesture& gesture) {
+  if (m_state != State::kDragging) return {};
+  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  SketchItem after = m_drag.finish();
+  m_state = State::kIdle;
+  ToolReply reply = consumed();
+  const SketchItem* before = m_document->item(after.id);
+  if (before == nullptr || *before == after) return reply;
+  const bool whole = m_grab && !m_grab->handle.valid();
+  const std::string what = whole ? "Move " : "Move handle of ";
+  const std::string label = what + std::string(vision::toString(after.kind)) + " " + quoted(after);
+  reply.command = replaceItem(*m_document, std::move(after), label);
+  return reply;
+}
+
+ToolReply SelectTool::onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
+  if (m_document == nullptr || m_state == State::kDragging) {
+    return key == vision::SketchKey::kEscape ? cancel() : consumed(false);
+  }
+  m_note.clear();
+  switch (key) {
+    case vision::SketchKey::kEscape: return cancel();
+    case vision::SketchKey::kDelete: return onDelete();
+    case vision::SketchKey::kTab: return onTab(modifiers.shift);
+    case vision::SketchKey::kReturn: return {};
+    default: return onArrow(key, modifiers);
+  }
+}
+
+ToolReply SelectTool::onArrow(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
+  if (!exists(m_active)) return {};
+  const SketchItem& item = *m_document->item(m_active.item);
+  ToolReply reply = consumed();
+  if (item.locked) {
+    m_note = quoted(item) + " is locked. Unlock it in the list to move it.";
+    return reply;
+  }
+  PickEdit edit = nudged(*m_document, item, m_active, key, modifiers);
+  if (edit.item == item) return reply;
+  reply.command = replaceItem(*m_document, std::move(edit.item), "Nudge " + quoted(item), nudgeKey(m_active));
+  return reply;
+}
+
+std::vector<Handle> SelectTool::handlesOf(FeatureId id) const {
+  std::vector<Handle> handles;
+  const SketchItem* item = m_document->item(id);
+  if (item == nullptr || item->hidden) return handles;
+  for (const PaneSide side : {PaneSide::kLeft, PaneSide::kRight}) {
+    const SnapshotId snapshot = m_document->paneSnapshotId(side);
+    for (const int vertex : verticesIn(*item, snapshot)) handles.push_back({id, vertex, snapshot, side});
+  }
+  return handles;
+}
+
+ToolReply SelectTool::onTab(bool backwards) {
+  const std::vector<Handle> handles = handlesOf(m_document->selection().primary);
+  if (handles.empty()) return {};
+  const auto here = std::find(handles.begin(), handles.end(), m_active);
+  const std::size_t n = handles.size();
+  const std::size_t at = static_cast<std::size_t>(here - handles.begin());
+  m_active = here == handles.end() ? handles[backwards ? n - 1 : 0] : handles[(at + (backwards ? n - 1 : 1)) % n];
+  return consumed();
+}
+
+ToolReply SelectTool::onDelete() {
+  std::vector<FeatureId> ids;
+  for (const FeatureId id : m_document->selection().items) {
+    const SketchItem* item = m_document->item(id);
+    if (!item->locked) ids.push_back(id);
+    else m_note = quoted(*item) + " is locked. Unlock it in the list to delete it.";
+  }
+  if (m_document->selection().items.empty()) return {};
+  ToolReply reply = consumed();
+  reply.command = removeItems(*m_document, ids);
+  return reply;
+}
+
+ToolReply SelectTool::cancel() {
+  m_filter.cancel();
+  if (m_state != State::kIdle) {
+    m_drag.cancel();
+    m_state = State::kIdle;
+    return consumed();
+  }
+  if (m_document == nullptr || m_document->selection().items.empty()) return {};
+  m_active = {};
+  ToolReply reply = consumed();
+  reply.selection = Selection{};
+  return reply;
+}
+
+void SelectTool::documentChanged() {
+  if (m_state == State::kGrabbed && m_grab && m_document->item(m_grab->handle.item) == nullptr) m_state = State::kIdle;
+  const bool gone = m_state == State::kDragging && !exists(m_drag.handle());
+  const bool other_picture = m_state == State::kDragging &&
+                             m_document->paneSnapshotId(m_drag.handle().side) != m_drag.handle().snapshot;
+  if (gone || other_picture) {
+    m_filter.cancel();
+    m_drag.cancel();
+    m_state = State::kIdle;
+  }
+  if (m_active.valid() && !exists(m_active)) m_active = {};
+}
+
+const SketchItem* SelectTool::draft() const { return m_drag.active() ? &m_drag.item() : nullptr; }
+
+vision::Overlay SelectTool::preview(PaneSide side) const {
+  if (m_drag.active()) return handlePreview(*m_document, m_drag.item(), m_drag.handle(), side);
+  if (!exists(m_active)) return {};
+  return handlePreview(*m_document, *m_document->item(m_active.item), m_active, side);
+}
+
+std::optional<LiveMeasure> SelectTool::liveMeasure() const {
+  if (m_drag.active()) return liveMeasureOf(*m_document, m_drag.item(), m_drag.handle(), &m_drag.edit());
+  if (!exists(m_active)) return std::nullopt;
+  return liveMeasureOf(*m_document, *m_document->item(m_active.item), m_active);
+}
+
+std::string SelectTool::hint() const {
+  if (m_drag.active()) {
+    if (m_drag.edit().released) return "Off the epipolar curve: the miss shows how far. Let go of Control to return to it.";
+    if (m_drag.edit().on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
+    return "Drag onto the feature; Esc cancels.";
+  }
+  if (!m_note.empty()) return m_note;
+  if (m_active.valid()) return "Arrow keys move the handle 0.1 px, with Shift 1 px; Tab goes to the next handle.";
+  if (m_document != nullptr && !m_document->selection().items.empty()) {
+    return "Choose a macro, drag a handle, or press Tab to work with the keys.";
+  }
+  if (m_document != nullptr && m_document->snapshots().empty()) return "Take a pair of snapshots to begin.";
+  return "Choose Point or Line and mark what matters, or click a feature to select it.";
+}
+
+}  // namespace longarm::session

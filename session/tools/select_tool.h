@@ -1,0 +1,70 @@
+#pragma once
+
+/// @file
+/// SelectTool: the default.  Selects, drags a handle or a whole feature, nudges, deletes.
+
+#include "session/tools/gesture_filter.h"
+#include "session/tools/hit_test.h"
+#include "session/tools/pick_drag.h"
+#include "session/tools/sketch_tool.h"
+
+namespace longarm::session {
+
+/// | state     | event                         | next      | answer                                       |
+/// |-----------|-------------------------------|-----------|----------------------------------------------|
+/// | kIdle     | hover                         | kIdle     | hint of what lies under the pointer          |
+/// | kIdle     | press on handle or body       | kGrabbed  | consumed                                     |
+/// | kIdle     | press on nothing              | kIdle     | not consumed: the canvas may pan             |
+/// | kIdle     | click on nothing              | kIdle     | selects nothing (Control, Shift: keeps)      |
+/// | kGrabbed  | click                         | kIdle     | selects (Control toggles, Shift adds)        |
+/// | kGrabbed  | drag begins, item not locked  | kDragging | selects                                      |
+/// | kGrabbed  | drag begins, item locked      | kIdle     | hint why not                                 |
+/// | kDragging | drag                          | kDragging | preview                                      |
+/// | kDragging | drag ends                     | kIdle     | one command                                  |
+/// | kDragging | Esc, or the item is gone      | kIdle     | nothing                                      |
+/// | kIdle     | Esc                           | kIdle     | selects nothing; not consumed when none was  |
+/// | kIdle     | arrow, active handle          | kIdle     | one command, absorbed by the one before      |
+/// | kIdle     | Tab                           | kIdle     | next handle of the primary selection         |
+/// | kIdle     | Delete                        | kIdle     | one command: removes what is selected        |
+class SelectTool final : public SketchTool {
+ public:
+  enum class State { kIdle, kGrabbed, kDragging };
+  State state() const { return m_state; }
+
+  ToolKind kind() const override { return ToolKind::kSelect; }
+  void activate(const Document& document) override;
+  void deactivate() override;
+  ToolReply onPointer(const vision::PointerEvent& event) override;
+  ToolReply onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) override;
+  ToolReply cancel() override;
+  void documentChanged() override;
+  const SketchItem* draft() const override;
+  vision::Overlay preview(PaneSide side) const override;
+  Handle activeHandle() const override { return m_active; }
+  void setActiveHandle(const Handle& handle) override;
+  bool busy() const override { return m_state == State::kDragging; }
+  std::optional<LiveMeasure> liveMeasure() const override;
+  std::string hint() const override;
+
+ private:
+  ToolReply onPress(const Gesture& gesture);
+  ToolReply onClick(const Gesture& gesture);
+  ToolReply onDrag(const Gesture& gesture);
+  ToolReply onDragEnd(const Gesture& gesture);
+  ToolReply onHover(const Gesture& gesture);
+  ToolReply onArrow(vision::SketchKey key, const vision::KeyModifiers& modifiers);
+  ToolReply onTab(bool backwards);
+  ToolReply onDelete();
+  bool exists(const Handle& handle) const;
+  std::vector<Handle> handlesOf(FeatureId id) const;
+
+  const Document* m_document = nullptr;
+  GestureFilter m_filter;
+  State m_state = State::kIdle;
+  std::optional<Hit> m_grab;
+  PickDrag m_drag;
+  Handle m_active;
+  std::string m_note;                      // Replaces the hint until the next event.
+};
+
+}  // namespace longarm::session

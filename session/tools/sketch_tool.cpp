@@ -1,0 +1,18 @@
+#include "session/tools/sketch_tool.h"
+
+#include "session/tools/line_tool.h"
+#include "session/tools/point_tool.h"
+#include "session/tools/select_tool.h"
+
+namespace longarm::session {
+
+std::unique_ptr<SketchTool> makeTool(ToolKind kind) {
+  switch (kind) {
+    case ToolKind::kSelect: return std::make_unique<SelectTool>();
+    case ToolKind::kPoint: return std::make_unique<PointTool>();
+    case ToolKind::kLine: return std::make_unique<LineTool>();
+  }
+  return std::make_unique<SelectTool>();
+}
+
+}  // namespace longarm::session
