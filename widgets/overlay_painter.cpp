@@ -1,0 +1,130 @@
+#include "widgets/overlay_painter.h"
+
+#include <cmath>
+
+#include <QPainterPath>
+#include <QVector>
+
+namespace longarm::widgets {
+
+namespace {
+
+using vision::OverlayRole;
+using vision::OverlayShape;
+
+const QColor kHalo(0, 0, 0, 190);
+
+QPen penOf(const RoleStyle& style, double factor) {
+  QPen pen(style.color, style.width * factor, style.dashed ? Qt::CustomDashLine : Qt::SolidLine, Qt::RoundCap,
+           Qt::RoundJoin);
+  if (style.dashed) pen.setDashPattern({4, 3});
+  return pen;
+}
+
+// Runs of points that can be shown; a point that cannot breaks the line.
+QVector<QPolygonF> mapped(const OverlayShape& shape, const PixelToWidget& to_widget, double max_step) {
+  QVector<QPolygonF> runs(1);
+  const auto add = [&](const Eigen::Vector2d& raw) {
+    const auto position = to_widget(raw);
+    if (position) {
+      runs.last().append(*position);
+    } else if (!runs.last().isEmpty()) {
+      runs.append(QPolygonF());
+    }
+  };
+  for (std::size_t i = 0; i < shape.points.size(); ++i) {
+    if (i > 0 && max_step > 0) {
+      const Eigen::Vector2d step = shape.points[i] - shape.points[i - 1];
+      const int pieces = static_cast<int>(std::min(200.0, std::ceil(step.norm() / max_step)));
+      for (int k = 1; k < pieces; ++k) add(shape.points[i - 1] + step * k / pieces);
+    }
+    add(shape.points[i]);
+  }
+  return runs;
+}
+
+void paintPolyline(QPainter& painter, const OverlayShape& shape, const RoleStyle& style,
+                   const PixelToWidget& to_widget, const OverlayLook& look) {
+  const auto runs = mapped(shape, to_widget, look.max_step_px);
+  painter.setBrush(Qt::NoBrush);
+  if (style.halo) {
+    QPen halo(kHalo, style.width * look.size_factor + 2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin);
+    painter.setPen(halo);
+    for (const auto& run : runs) painter.drawPolyline(run);
+  }
+  painter.setPen(penOf(style, look.size_factor));
+  for (const auto& run : runs) painter.drawPolyline(run);
+}
+
+// A ring with a cross inside that leaves the pixel itself free to see.
+void paintHandle(QPainter& painter, const QPointF& at, const RoleStyle& style, double factor, bool active) {
+  const double r = kHandleRadius * factor * (active ? 1.25 : 1);
+  const double gap = r * 0.35;
+  QPainterPath path;
+  path.addEllipse(at, r, r);
+  for (const QPointF way : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)}) {
+    path.moveTo(at + way * gap);
+    path.lineTo(at + way * (r * 1.5));
+  }
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(kHalo, style.width * factor + 2.2, Qt::SolidLine, Qt::RoundCap));
+  painter.drawPath(path);
+  painter.setPen(penOf(style, factor));
+  painter.drawPath(path);
+}
+
+void paintTick(QPainter& painter, const QPointF& at, const RoleStyle& style, double factor) {
+  painter.setPen(QPen(kHalo, 1));
+  painter.setBrush(style.color);
+  painter.drawEllipse(at, 3.2 * factor, 3.2 * factor);
+}
+
+void paintMarker(QPainter& painter, const OverlayShape& shape, const RoleStyle& style,
+                 const PixelToWidget& to_widget, const OverlayLook& look) {
+  for (const auto& raw : shape.points) {
+    const auto at = to_widget(raw);
+    if (!at) continue;
+    switch (shape.role) {
+      case OverlayRole::kHandle:
+      case OverlayRole::kUnplaced: paintHandle(painter, *at, style, look.size_factor, false); break;
+      case OverlayRole::kActiveHandle: paintHandle(painter, *at, style, look.size_factor, true); break;
+      default: paintTick(painter, *at, style, look.size_factor); break;
+    }
+  }
+}
+
+void paintText(QPainter& painter, const OverlayShape& shape, const RoleStyle& style, const PixelToWidget& to_widget) {
+  if (shape.points.empty()) return;
+  const auto at = to_widget(shape.points.front());
+  if (!at) return;
+  const double lift = shape.role == OverlayRole::kDepthTick ? 5 : kHandleRadius + 5;
+  paintHaloText(painter, *at + QPointF(lift, -lift), QString::fromStdString(shape.text), style.color);
+}
+
+}  // namespace
+
+void paintHaloText(QPainter& painter, const QPointF& anchor, const QString& text, const QColor& color) {
+  QPainterPath path;
+  path.addText(anchor, painter.font(), text);
+  painter.strokePath(path, QPen(kHalo, 3, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  painter.fillPath(path, color);
+}
+
+void paintOverlay(QPainter& painter, const vision::Overlay& overlay, const Theme& theme,
+                  const PixelToWidget& to_widget, const OverlayLook& look) {
+  painter.save();
+  painter.setRenderHint(QPainter::Antialiasing);
+  for (const auto& shape : overlay.shapes) {
+    const RoleStyle style = theme.role(shape.role);
+    switch (shape.kind) {
+      case OverlayShape::Kind::kPolyline: paintPolyline(painter, shape, style, to_widget, look); break;
+      case OverlayShape::Kind::kMarker: paintMarker(painter, shape, style, to_widget, look); break;
+      case OverlayShape::Kind::kText:
+        if (look.labels) paintText(painter, shape, style, to_widget);
+        break;
+    }
+  }
+  painter.restore();
+}
+
+}  // namespace longarm::widgets
