@@ -92,7 +92,7 @@ void AimStick::paintEvent(QPaintEvent*) {
     painter.save();
     painter.translate(centre);
     painter.rotate(90.0 * quarter);
-    painter.drawPolyline(QPolygonF{{-5, -outer + 11}, {0, -outer + 6}, {5, -outer + 11}});
+    painter.drawPolyline(QVector<QPointF>{{-5, -outer + 11}, {0, -outer + 6}, {5, -outer + 11}});
     painter.restore();
   }
   painter.setPen(QPen(m_theme.border, 1.5));

@@ -56,7 +56,7 @@ void StatusLamp::paintEvent(QPaintEvent*) {
       break;
     case Level::kDegraded: {
       painter.setBrush(m_theme.amber);
-      painter.drawPolygon(QPolygonF{{shape.center().x(), shape.top()}, shape.bottomRight(), shape.bottomLeft()});
+      painter.drawPolygon(QVector<QPointF>{{shape.center().x(), shape.top()}, shape.bottomRight(), shape.bottomLeft()});
       break;
     }
     case Level::kLost:

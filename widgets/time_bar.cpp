@@ -92,7 +92,7 @@ void TimeBar::paintEvent(QPaintEvent*) {
   painter.setPen(QPen(m_theme.text, 2));
   painter.setBrush(m_theme.text);
   painter.drawLine(QPointF(x, kBarTop - 2), QPointF(x, kBarTop + kBarHeight + 2));
-  painter.drawPolygon(QPolygonF{{x - 5, kBarTop + kBarHeight + 8}, {x + 5, kBarTop + kBarHeight + 8}, {x, kBarTop + kBarHeight + 1}});
+  painter.drawPolygon(QVector<QPointF>{{x - 5, kBarTop + kBarHeight + 8}, {x + 5, kBarTop + kBarHeight + 8}, {x, kBarTop + kBarHeight + 1}});
   painter.setPen(m_theme.muted);
   const QRectF under(kMargin, kBarTop + kBarHeight + 2, bar.width(), height() - kBarTop - kBarHeight - 2);
   painter.drawText(under, Qt::AlignRight | Qt::AlignTop, tr("%1 s").arg(QString::number(m_duration, 'f', 1)));

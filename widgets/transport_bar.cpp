@@ -9,6 +9,7 @@
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QToolButton>
+#include <QVariant>
 #include <QVBoxLayout>
 
 #include "widgets/icon.h"
