@@ -1,0 +1,51 @@
+#pragma once
+
+/// @file
+/// From waypoints to a timed, re-checked trajectory in stages.
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/motion.h"
+#include "core/result.h"
+#include "planning/motion/arm_space.h"
+#include "planning/motion/plan.h"
+#include "planning/motion/straight_leg.h"
+
+namespace longarm::planning {
+
+/// Speeds of one stage; both caps hold at playback speed 1.
+struct StageSpeed {
+  double max_tool_speed = 0.25;          ///< [m/s]
+};
+
+/// A free joint path, its corners rounded, with times.
+///
+/// Corners are rounded as far as the rounding stays free (each curve is checked in chords that it leaves by less than
+/// 0.2 mrad); the finished trajectory is then checked once more, point to point and continuously.
+/// @param waypoints  Every straight piece free in the space's collision world.
+/// @returns kCollision when the finished trajectory cannot be certified, kDegenerate as parameterize().
+Result<Trajectory> timedPath(const Workcell& workcell, const ArmSpace& space, const std::vector<Eigen::VectorXd>& waypoints,
+                             const StageSpeed& speed);
+
+/// A straight leg with times.  @returns as timedPath(), kCollision when the leg is not free.
+Result<Trajectory> timedLeg(const Workcell& workcell, const ArmSpace& space, const StraightLeg& leg,
+                            const StageSpeed& speed);
+
+/// Whether the whole trajectory is free, continuously from point to point, at 40 % of the world's paddings: the
+/// pieces were found at the full padding and certified at half of it.
+bool certified(const ArmSpace& space, const Trajectory& trajectory, Contact* contact);
+
+/// Appends a stage to a plan.
+void appendStage(Plan& plan, const std::string& name, bool straight, const Trajectory& trajectory);
+
+/// Fills in max_velocity_ratio and max_acceleration_ratio, of the workcell's limits.
+void measureRatios(const Workcell& workcell, Plan& plan);
+
+/// Least clearance along [from_s, to_s] of the plan's trajectory, at most `cap` [m].
+double leastClearance(const ArmSpace& space, const Trajectory& trajectory, double from_s, double to_s,
+                      double cap = 0.5);
+
+}  // namespace longarm::planning
