@@ -138,17 +138,26 @@ Result<Answer> runIk(const RobotOptions& options) {
   if (!goal) return goal.error();
   const auto q = configuration(*robot, options.joints);
   if (!q) return q.error();
+  const auto joints = robot->group.joints.size();
+  if (joints == 0 || joints > planning::ChainKinematics::kMaxJoints) {
+    return Error{ErrorCode::kInvalidInput, "--tip: the chain to " + robot->group.tip_link + " has " + std::to_string(joints) +
+                                               " moving joints; 1 to " + std::to_string(planning::ChainKinematics::kMaxJoints) +
+                                               " can be solved (choose a nearer --base)"};
+  }
   const planning::IkSolver solver(robot->model, robot->group);
   planning::IkOptions ik;
   ik.seed = options.seed;
-  const auto solutions = solver.solveAll(*goal, *q, ik, options.most);
+  const auto solved = solver.solveAll(*goal, planning::groupPositions(*robot->model, robot->group, *q), ik);
+  if (!solved && solved.error().code != ErrorCode::kNoSolution) return solved.error();
+  auto solutions = solved.valueOr({});
+  if (solutions.size() > static_cast<std::size_t>(options.most)) solutions.resize(static_cast<std::size_t>(options.most));
   nlohmann::json json = {{"tip", robot->group.tip_link}, {"solutions", nlohmann::json::array()}};
   std::vector<std::vector<std::string>> rows = {{"joints", "position error m", "orientation error rad"}};
   for (const auto& s : solutions) {
     json["solutions"].push_back({{"joints", vectorJson(s.joints)}, {"position_error", s.position_error},
                                  {"orientation_error", s.orientation_error}});
     std::string text;
-    for (const double v : s.joints) text += (text.empty() ? "" : ",") + formatFixed(v, 5);
+    for (const double v : std::vector<double>(s.joints.data(), s.joints.data() + s.joints.size())) text += (text.empty() ? "" : ",") + formatFixed(v, 5);
     rows.push_back({text, formatNumber(s.position_error), formatNumber(s.orientation_error)});
   }
   if (solutions.empty()) {
