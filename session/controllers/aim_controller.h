@@ -57,17 +57,18 @@ class AimController final : public QObject {
 
  private:
   void tick();
+  Status turnBy(double right, double up);
   Status send(const PanTiltAngles& wanted);
-  const planning::PanTiltSpec* spec() const;
-  Result<PanTiltAngles> current() const;
+  const planning::CameraSpec* cameraOfPanTilt() const;
 
   RobotFeed* m_feed = nullptr;
   std::shared_ptr<const planning::Workcell> m_workcell;
   std::string m_pan_tilt;
   QTimer m_timer;
   double m_right = 0, m_up = 0, m_max_rate = 0.6;
-  double m_last_tick_s = 0;
-  PanTiltAngles m_target;
+  double m_last_tick_s = 0, m_sent_s = 0;
+  PanTiltAngles m_target;                  // Last command.
+  bool m_has_target = false;
 };
 
 }  // namespace longarm::session

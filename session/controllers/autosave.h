@@ -3,6 +3,8 @@
 /// @file
 /// Autosave: writes the sketch beside the program's data soon after each change, for the day the power goes.
 
+#include <memory>
+
 #include <QObject>
 #include <QString>
 #include <QTimer>
@@ -43,6 +45,8 @@ class Autosave final : public QObject {
   JobRunner& m_jobs;
   QString m_folder;
   QTimer m_timer;
+  struct Gate;
+  std::shared_ptr<Gate> m_gate;            // One writer at a time; work queued before flush or discard is void.
   bool m_dirty = false, m_saving = false;
   int m_observer = 0;
 };

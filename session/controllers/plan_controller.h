@@ -10,6 +10,7 @@
 
 #include <QObject>
 #include <QString>
+#include <QTimer>
 
 #include "core/cancel.h"
 #include "planning/macros/macro.h"
@@ -21,6 +22,7 @@ namespace longarm::session {
 /// One macro as a button shows it.
 struct MacroRow {
   QString name, title, description;
+  std::optional<vision::FeatureKind> takes;   ///< Empty: a canned motion.
   bool enabled = false;
   QString reason;                          ///< Why it is disabled: what to do; empty when enabled.
 };
@@ -67,24 +69,38 @@ class PlanController final : public QObject {
   void failed(const QString& sentence);
 
  private:
+  using Macros = std::vector<std::unique_ptr<planning::Macro>>;
+  struct Progress;
+  /// What a plan was asked for, as it was then.
+  struct Request {
+    int generation = 0;
+    std::string macro;
+    FeatureId item;
+    std::optional<vision::Feature> feature;
+  };
+
   void rebuildMacros();
-  const planning::Macro* find(const QString& name) const;
   QString whyNot(const planning::MacroInfo& info) const;
-  void deliver(int generation, const std::string& macro, FeatureId feature, Result<planning::Plan> result);
+  void start(const planning::Macro& macro, const planning::MacroInfo& info);
+  void deliver(const Request& request, Result<planning::Plan> result);
+  Status checkFeature() const;
+  void pollProgress();
   void setState(State state);
 
   Document& m_document;
   JobRunner& m_jobs;
-  std::shared_ptr<std::vector<std::unique_ptr<planning::Macro>>> m_macros;
+  std::shared_ptr<Macros> m_macros;
   std::function<std::shared_ptr<const JointState>()> m_joints;
   State m_state = State::kIdle;
   CancelToken m_cancel;
   int m_generation = 0;
   unsigned m_seed = 1;
   double m_budget_s = 5;
+  QTimer m_timer;
+  std::shared_ptr<Progress> m_live;
   double m_progress = 0;
   QString m_progress_text, m_planning;
-  std::optional<vision::Feature> m_planned_feature;    ///< As it was when the plan was asked for.
+  std::optional<Request> m_planned;        // Of the plan in the document.
   int m_observer = 0;
 };
 

@@ -20,6 +20,7 @@ namespace longarm::session {
 
 struct SnapshotTiming {
   double timeout_s = 3;                    ///< For a frame newer than the request.
+  double settle_s = 1;                     ///< How long to wait for a pair that checkPair() accepts.
   int poll_ms = 10;
   PairLimits limits;
 };
@@ -46,8 +47,8 @@ class SnapshotController final : public QObject {
   /// taken() or failed().
   void takePair(const QString& left_camera, const QString& right_camera);
   void take(const QString& camera, PaneSide side);
-  /// Both ends: open pictures from files into left and right.
-  void openFiles(const PictureFiles& left, const PictureFiles& right);
+  /// Opens pictures from files.
+  void openFiles(const PictureFiles& left, const PictureFiles& right);   ///< One undo step.
   void openFile(const PictureFiles& picture, PaneSide side);
   void openViews(const QString& views_yaml);
   void cancel();
@@ -61,6 +62,11 @@ class SnapshotController final : public QObject {
   using Snapshots = std::vector<vision::Snapshot>;
   void request(std::vector<std::string> cameras, PaneSide side);
   void poll();
+  void collect();
+  bool complete() const;
+  /// The frames to use, nearest in time; kRefused as checkPair.  @pre complete()
+  Result<std::vector<StampedFrame>> choose() const;
+  void expire(double waited_s);
   void decode(std::function<Result<Snapshots>()> work, PaneSide side);
   void finish(Result<Snapshots> result, PaneSide side);
   void fail(const std::string& sentence);
@@ -75,10 +81,10 @@ class SnapshotController final : public QObject {
   QTimer m_timer;
   int m_generation = 0;
   std::vector<std::string> m_cameras;
-  std::vector<std::vector<StampedFrame>> m_frames;   ///< Per camera, newer than the request.
+  std::vector<std::vector<StampedFrame>> m_frames;   // Per camera, newer than the request.
   PaneSide m_side = PaneSide::kLeft;
   double m_requested_s = 0;
-  std::string m_why_waiting;
+  std::string m_refusal;                             // Of the best pair so far.
 };
 
 }  // namespace longarm::session

@@ -1,0 +1,231 @@
+#include "session/controllers/plan_controller.h"
+
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "core/text.h"
+
+namespace longarm::session {
+
+/// Newest progress, written by the planner's thread and polled by the GUI's.
+struct PlanController::Progress {
+  std::mutex mutex;
+  double fraction = 0;
+  std::string text;
+};
+
+PlanController::PlanController(Document& document, JobRunner& jobs, QObject* parent)
+    : QObject(parent), m_document(document), m_jobs(jobs) {
+  m_timer.setInterval(50);
+  connect(&m_timer, &QTimer::timeout, this, &PlanController::pollProgress);
+  m_observer = m_document.observe([this](const Change& change) {
+    if (change.kind == ChangeKind::kPlanChanged || change.kind == ChangeKind::kPaneChanged) return;
+    if (change.kind == ChangeKind::kWorkcellChanged) rebuildMacros();
+    Q_EMIT macrosChanged();
+  });
+  rebuildMacros();
+}
+
+PlanController::~PlanController() {
+  m_document.unobserve(m_observer);
+  m_cancel.cancel();
+}
+
+void PlanController::rebuildMacros() {
+  cancel();
+  m_macros.reset();
+  if (!m_document.workcell()) return;
+  m_macros = std::make_shared<Macros>(planning::makeMacros(*m_document.workcell()));
+}
+
+QString PlanController::whyNot(const planning::MacroInfo& info) const {
+  const auto workcell = m_document.workcell();
+  const FeatureId selected = m_document.selection().primary;
+  if (!info.takes && selected.valid()) return tr("Canned motions are there when nothing is selected: press Esc first.");
+  if (info.takes) {
+    const QString kind = QString::fromLatin1(vision::toString(*info.takes));
+    const SketchItem* item = m_document.item(selected);
+    if (item == nullptr) return tr("Select a %1 first.").arg(kind);
+    if (item->kind != *info.takes) {
+      return tr("Takes a %1; a %2 is selected.").arg(kind, QString::fromLatin1(vision::toString(item->kind)));
+    }
+    const Measurement& measured = m_document.measurement(selected);
+    if (!measured.feature) return QString::fromStdString(measured.reason);
+    const std::string& root = workcell->model->links()[static_cast<std::size_t>(workcell->model->rootLink())].name;
+    if (measured.feature->parent != root) {
+      return tr("'%1' is measured in frame %2, the robot stands in %3. Measure it in pictures of the robot's cameras.")
+          .arg(QString::fromStdString(item->name), QString::fromStdString(measured.feature->parent),
+               QString::fromStdString(root));
+    }
+  }
+  if (!m_joints || !m_joints()) return tr("The robot's joints are not known yet.");
+  return {};
+}
+
+std::vector<MacroRow> PlanController::macros() const {
+  std::vector<MacroRow> rows;
+  if (!m_macros) return rows;
+  for (const auto& macro : *m_macros) {
+    const planning::MacroInfo info = macro->info();
+    MacroRow row;
+    row.name = QString::fromStdString(info.name);
+    row.title = QString::fromStdString(info.title);
+    row.description = QString::fromStdString(info.description);
+    row.takes = info.takes;
+    row.reason = whyNot(info);
+    row.enabled = row.reason.isEmpty();
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Status PlanController::plan(const QString& name) {
+  const planning::Macro* macro = m_macros ? planning::findMacro(*m_macros, name.toStdString()) : nullptr;
+  if (macro == nullptr) {
+    return {ErrorCode::kNotFound, m_macros ? "There is no macro \"" + name.toStdString() + "\"."
+                                           : std::string("No workcell is loaded: there is nothing to plan for.")};
+  }
+  const planning::MacroInfo info = macro->info();
+  if (const QString reason = whyNot(info); !reason.isEmpty()) return {ErrorCode::kRefused, reason.toStdString()};
+  cancel();
+  start(*macro, info);
+  return {};
+}
+
+void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info) {
+  const auto workcell = m_document.workcell();
+  planning::PlanContext context;
+  context.workcell = workcell.get();
+  context.start = workcell->model->neutral();
+  workcell->model->assign(*m_joints(), context.start);
+  context.seed = m_seed;
+  context.budget_s = m_budget_s;
+  m_cancel = CancelToken();
+  context.cancel = m_cancel;
+  m_live = std::make_shared<Progress>();
+  context.progress = [live = m_live](double fraction, const std::string& text) {
+    const std::lock_guard<std::mutex> lock(live->mutex);
+    live->fraction = fraction;
+    live->text = text;
+  };
+  Request request{++m_generation, info.name, info.takes ? m_document.selection().primary : FeatureId{}, {}};
+  if (info.takes) request.feature = *m_document.selectedFeature();
+  m_progress = 0;
+  m_progress_text.clear();
+  m_planning = QString::fromStdString(info.name);
+  setState(State::kPlanning);
+  m_timer.start();
+  // The job keeps workcell and macros alive: a new workcell may be loaded meanwhile.
+  m_jobs.run<planning::Plan>(
+      this,
+      [macros = m_macros, workcell, &macro, context, feature = request.feature]() -> Result<planning::Plan> {
+        return macro.plan(context, feature ? &*feature : nullptr);
+      },
+      [this, request](Result<planning::Plan> result) { deliver(request, std::move(result)); });
+}
+
+void PlanController::deliver(const Request& request, Result<planning::Plan> result) {
+  if (request.generation != m_generation) return;
+  m_timer.stop();
+  m_planning.clear();
+  setState(State::kIdle);
+  if (!result) {
+    Q_EMIT failed(QString::fromStdString(result.error().message));
+    return;
+  }
+  m_planned = request;
+  PlanRecord record;
+  record.macro = request.macro;
+  record.feature = request.item;
+  record.plan = std::move(*result);
+  const bool ok = record.plan.ok();
+  const QString reason = QString::fromStdString(record.plan.reason);
+  m_document.setPlan(std::move(record));
+  Q_EMIT planned(ok);
+  if (!ok) Q_EMIT failed(reason);
+}
+
+void PlanController::cancel() {
+  m_cancel.cancel();
+  ++m_generation;
+  m_timer.stop();
+  m_planning.clear();
+  setState(State::kIdle);
+}
+
+Status PlanController::replan() {
+  if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan to plan again. Choose a macro."};
+  const PlanRecord& record = *m_document.plan();
+  if (record.feature.valid()) {
+    if (m_document.item(record.feature) == nullptr) {
+      return {ErrorCode::kRefused, "The feature of the plan was deleted. Undo, or choose a macro for another one."};
+    }
+    m_document.select(Selection::of(record.feature));
+  } else {
+    m_document.select({});
+  }
+  return plan(QString::fromStdString(record.macro));
+}
+
+void PlanController::discard() {
+  m_planned.reset();
+  m_document.clearPlan();
+}
+
+Status PlanController::checkFeature() const {
+  if (!m_planned || !m_planned->feature) return {};
+  const FeatureId id = m_planned->item;
+  const SketchItem* item = m_document.item(id);
+  if (item == nullptr) return {ErrorCode::kStale, "The feature the plan was made for was deleted. Plan again."};
+  const Measurement& now = m_document.measurement(id);
+  bool same = now.feature && now.feature->vertices.size() == m_planned->feature->vertices.size();
+  for (std::size_t i = 0; same && i < now.feature->vertices.size(); ++i) {
+    same = now.feature->vertices[i].xyz == m_planned->feature->vertices[i].xyz;
+  }
+  if (same) return {};
+  return {ErrorCode::kStale, "'" + item->name + "' was moved since the plan was made. Plan again."};
+}
+
+Status PlanController::checkFresh(const JointState& now, double tolerance) const {
+  if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan. Choose a macro."};
+  const planning::Plan& plan = m_document.plan()->plan;
+  if (!plan.ok()) return {ErrorCode::kRefused, "The plan failed: " + plan.reason};
+  if (const Status feature = checkFeature(); !feature) return feature;
+  if (plan.trajectory.empty()) return {ErrorCode::kRefused, "The plan has no motion."};
+  const auto& names = plan.trajectory.joint_names;
+  const auto measured = now.positionsOf(names);
+  if (!measured) return measured.error();
+  const Eigen::VectorXd& start = plan.trajectory.points.front().positions;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const double difference = std::abs(start(i) - (*measured)(i));
+    if (difference <= tolerance) continue;
+    return {ErrorCode::kStale, "The robot is not where the plan starts: " + names[static_cast<std::size_t>(i)] + " is " +
+                                   formatFixed(difference, 4) + " away, " + formatFixed(tolerance, 4) +
+                                   " is allowed. Plan again from here."};
+  }
+  return {};
+}
+
+void PlanController::pollProgress() {
+  if (!m_live) return;
+  double fraction = 0;
+  QString text;
+  {
+    const std::lock_guard<std::mutex> lock(m_live->mutex);
+    fraction = m_live->fraction;
+    text = QString::fromStdString(m_live->text);
+  }
+  if (fraction == m_progress && text == m_progress_text) return;
+  m_progress = fraction;
+  m_progress_text = text;
+  Q_EMIT progressChanged();
+}
+
+void PlanController::setState(State state) {
+  if (m_state == state) return;
+  m_state = state;
+  Q_EMIT stateChanged();
+}
+
+}  // namespace longarm::session

@@ -1,0 +1,29 @@
+#pragma once
+
+/// @file
+/// RuntimeFeed: a RobotRuntime as snapshots and aiming see it.
+
+#include "session/controllers/robot_feed.h"
+#include "session/robot/robot_runtime.h"
+
+namespace longarm::session {
+
+/// Borrows the runtime, which must outlive this.
+class RuntimeFeed final : public RobotFeed {
+ public:
+  explicit RuntimeFeed(RobotRuntime& runtime) : m_runtime(runtime) {}
+  double now_s() const override { return m_runtime.clock().now_s(); }
+  std::shared_ptr<const hardware::Frame> latestFrame(const std::string& camera) const override {
+    return m_runtime.cameraFrame(camera);
+  }
+  std::shared_ptr<const JointState> jointState() const override { return m_runtime.jointState(); }
+  Result<JointState> jointStateAt(double stamp_s) const override { return m_runtime.jointStateAt(stamp_s); }
+  Status movePanTilt(const std::string& pan_tilt, double pan, double tilt) override {
+    return m_runtime.movePanTilt(pan_tilt, pan, tilt);
+  }
+
+ private:
+  RobotRuntime& m_runtime;
+};
+
+}  // namespace longarm::session

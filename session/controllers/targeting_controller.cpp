@@ -1,0 +1,121 @@
+#include "session/controllers/targeting_controller.h"
+
+#include <utility>
+
+#include "session/commands/sketch_commands.h"
+
+namespace longarm::session {
+
+TargetingController::TargetingController(Document& document, EditHistory& history, QObject* parent)
+    : QObject(parent), m_document(document), m_history(history), m_tools(document, history) {
+  ToolHost::Callbacks callbacks;
+  callbacks.overlay_changed = [this] {
+    Q_EMIT overlayChanged();
+    Q_EMIT liveMeasureChanged();
+  };
+  callbacks.hint_changed = [this](const std::string& text) { Q_EMIT hintChanged(QString::fromStdString(text)); };
+  callbacks.tool_changed = [this](ToolKind kind) { Q_EMIT toolChanged(kind); };
+  m_tools.setCallbacks(std::move(callbacks));
+  m_history.onChanged([this] { Q_EMIT historyChanged(); });
+  m_observer = m_document.observe([this](const Change& change) { changed(change); });
+}
+
+TargetingController::~TargetingController() {
+  m_document.unobserve(m_observer);
+  m_history.onChanged({});
+  m_tools.setCallbacks({});
+}
+
+void TargetingController::changed(const Change& change) {
+  switch (change.kind) {
+    case ChangeKind::kSnapshotAdded:
+    case ChangeKind::kSnapshotRemoved: Q_EMIT snapshotsChanged(); break;
+    case ChangeKind::kPaneChanged: Q_EMIT panesChanged(); break;
+    case ChangeKind::kItemAdded:
+    case ChangeKind::kItemChanged:
+    case ChangeKind::kItemRemoved: Q_EMIT featuresChanged(); break;
+    case ChangeKind::kSelectionChanged:
+      Q_EMIT selectionChanged();
+      Q_EMIT featuresChanged();
+      break;
+    case ChangeKind::kPlanChanged:
+    case ChangeKind::kWorkcellChanged:
+      m_path.clear();
+      if (m_document.plan() && m_document.workcell()) m_path = planPath(*m_document.workcell(), m_document.plan()->plan);
+      Q_EMIT planChanged();
+      Q_EMIT overlayChanged();
+      break;
+    case ChangeKind::kReset:
+      m_path.clear();
+      Q_EMIT snapshotsChanged();
+      Q_EMIT panesChanged();
+      Q_EMIT selectionChanged();
+      Q_EMIT featuresChanged();
+      Q_EMIT planChanged();
+      Q_EMIT overlayChanged();
+      break;
+  }
+}
+
+void TargetingController::setTool(ToolKind kind) { m_tools.setTool(kind); }
+
+QString TargetingController::whyNotTool(ToolKind kind) const {
+  if (kind == ToolKind::kSelect) return {};
+  const bool any = m_document.paneSnapshot(PaneSide::kLeft) || m_document.paneSnapshot(PaneSide::kRight);
+  return any ? QString() : tr("Take a pair of snapshots first, or open pictures from files.");
+}
+
+vision::Overlay TargetingController::overlay(PaneSide side) const {
+  OverlayOptions options;
+  options.path_points = &m_path;
+  return m_tools.overlay(side, options);
+}
+
+vision::Overlay TargetingController::overlay(const vision::View& view) const {
+  OverlayOptions options;
+  options.path_points = &m_path;
+  return buildOverlay(m_document, view, options);
+}
+
+void TargetingController::select(FeatureId id) { select(id.valid() ? Selection::of(id) : Selection{}); }
+
+void TargetingController::select(const Selection& selection) {
+  m_history.seal();
+  m_document.select(selection);
+}
+
+void TargetingController::push(std::unique_ptr<EditCommand> command) {
+  if (command == nullptr || m_tools.busy()) return;
+  m_history.seal();
+  m_history.push(std::move(command));
+}
+
+void TargetingController::rename(FeatureId id, const QString& name) {
+  push(renameItem(m_document, id, name.trimmed().left(100).toStdString()));
+}
+
+void TargetingController::setHidden(FeatureId id, bool hidden) { push(hideItem(m_document, id, hidden)); }
+void TargetingController::setLocked(FeatureId id, bool locked) { push(lockItem(m_document, id, locked)); }
+void TargetingController::setColour(FeatureId id, std::optional<std::uint32_t> rgb) {
+  push(colourItem(m_document, id, rgb));
+}
+void TargetingController::duplicate(FeatureId id) { push(duplicateItem(m_document, id)); }
+void TargetingController::remove(FeatureId id) { push(removeItems(m_document, {id})); }
+
+void TargetingController::removeSelected() {
+  const auto& items = m_document.selection().items;
+  push(removeItems(m_document, {items.begin(), items.end()}));
+}
+
+void TargetingController::showSnapshot(PaneSide side, SnapshotId id) { push(session::showSnapshot(m_document, side, id)); }
+void TargetingController::removeSnapshot(SnapshotId id) { push(session::removeSnapshot(m_document, id)); }
+
+void TargetingController::undo() {
+  if (canUndo()) m_history.undo();
+}
+
+void TargetingController::redo() {
+  if (canRedo()) m_history.redo();
+}
+
+}  // namespace longarm::session
