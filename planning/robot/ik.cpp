@@ -77,14 +77,33 @@ IkSolver::IkSolver(std::shared_ptr<const RobotModel> model, const JointGroup& gr
 
 IkSolver::IkSolver(std::shared_ptr<const RobotModel> model, const JointGroup& group,
                    const Eigen::VectorXd& reference)
-    : m_model(std::move(model)), m_group(group), m_chain(*m_model, group, reference) {
-  for (const int index : group.joints) {
-    const Joint& joint = m_model->joints()[static_cast<std::size_t>(index)];
+    : m_model(std::move(model)),
+      m_group(group),
+      m_chain(*m_model, group, reference),
+      m_lower(group.joints.size()),
+      m_upper(group.joints.size()),
+      m_wraps(group.joints.size()) {
+  for (std::size_t i = 0; i < group.joints.size(); ++i) {
+    const Joint& joint = m_model->joints()[static_cast<std::size_t>(group.joints[i])];
     const bool limited = std::isfinite(joint.lower) && std::isfinite(joint.upper);
-    m_lower.push_back(limited ? joint.lower : -M_PI);
-    m_upper.push_back(limited ? joint.upper : M_PI);
-    m_wraps.push_back(joint.type != JointType::kPrismatic && m_upper.back() - m_lower.back() > kTwoPi - 1e-4);
+    setLimit(i, limited ? joint.lower : -M_PI, limited ? joint.upper : M_PI);
   }
+}
+
+void IkSolver::setLimits(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  LONGARM_REQUIRE(lower.size() == m_chain.size() && upper.size() == m_chain.size(), "limits of the wrong size");
+  for (std::size_t i = 0; i < m_lower.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    LONGARM_REQUIRE(std::isfinite(lower[k]) && std::isfinite(upper[k]) && lower[k] <= upper[k], "limits crossed");
+    setLimit(i, lower[k], upper[k]);
+  }
+}
+
+void IkSolver::setLimit(std::size_t i, double lower, double upper) {
+  m_lower[i] = lower;
+  m_upper[i] = upper;
+  const Joint& joint = m_model->joints()[static_cast<std::size_t>(m_group.joints[i])];
+  m_wraps[i] = joint.type != JointType::kPrismatic && upper - lower > kTwoPi - 1e-4;
 }
 
 Status IkSolver::check(const Pose& goal, const Eigen::VectorXd& seed) const {

@@ -42,13 +42,17 @@ struct IkSolution {
 /// the others clamped to their limits; tries that stop improving are given up early.
 ///
 /// Every answer is checked by forward kinematics and lies within the limits.  The same input and seed give the same
-/// answer.  Immutable; const methods are thread-safe and allocate nothing but the answer.
+/// answer.  Const methods are thread-safe and allocate nothing but the answer.
 class IkSolver {
  public:
   /// Joints outside the group stand at `reference` (the model's neutral configuration by default).
   /// @pre The group has 1 ... ChainKinematics::kMaxJoints joints.
   IkSolver(std::shared_ptr<const RobotModel> model, const JointGroup& group);
   IkSolver(std::shared_ptr<const RobotModel> model, const JointGroup& group, const Eigen::VectorXd& reference);
+
+  /// Keeps answers inside these limits (a workcell's, with their margin) instead of the URDF's.
+  /// @pre n values each, finite, lower <= upper.
+  void setLimits(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
   const ChainKinematics& kinematics() const { return m_chain; }
   const JointGroup& group() const { return m_group; }
@@ -71,6 +75,7 @@ class IkSolver {
   template <int kJoints>
   Attempt descend(const Goal& goal, double* q, const IkOptions& options) const;
   Attempt attempt(const Goal& goal, double* q, const IkOptions& options) const;
+  void setLimit(std::size_t i, double lower, double upper);
   Status check(const Pose& goal, const Eigen::VectorXd& seed) const;
   void applyLimits(double* q) const;
   IkSolution solution(const Goal& goal, const double* q, const Eigen::VectorXd& seed) const;

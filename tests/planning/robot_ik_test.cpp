@@ -89,6 +89,17 @@ TEST_F(IkTest, GivesTheSameAnswerForTheSameSeed) {
   EXPECT_EQ(a->joints, b->joints);
 }
 
+TEST_F(IkTest, KeepsNarrowerLimitsWhenGiven) {
+  Eigen::VectorXd lower(6), upper(6);
+  lower << -1, -1, 0, -1, 0, -1;
+  upper << 1, 1, 2, 1, 2, 1;
+  m_solver.setLimits(lower, upper);
+  const Eigen::VectorXd truth = 0.3 * lower + 0.7 * upper;
+  const auto found = m_solver.solve(m_solver.kinematics().forward(truth.data()), lower);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_TRUE((found->joints.array() >= lower.array()).all() && (found->joints.array() <= upper.array()).all());
+}
+
 TEST_F(IkTest, LeavesFreeDirectionsFree) {
   const Eigen::VectorXd truth = (Eigen::VectorXd(6) << 0.3, 0.4, 1.3, 0.2, 1.2, 0.5).finished();
   const Pose goal = m_solver.kinematics().forward(truth.data());
