@@ -309,6 +309,7 @@ Status Player::resumeFrom(const Eigen::VectorXd& measured, double tolerance) {
 
 PlayerState Player::state() const { return m_impl->state; }
 double Player::cursor() const { return m_impl->preview.value_or(m_impl->current().tau); }
+double Player::armCursor() const { return m_impl->current().tau; }
 double Player::rate() const { return m_impl->commandedRate(); }
 double Player::speed() const { return m_impl->speed; }
 double Player::duration() const { return m_impl->trajectory.duration(); }

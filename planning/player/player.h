@@ -43,6 +43,7 @@ class Player {
 
   PlayerState state() const;
   double cursor() const;                 ///< tau [s]
+  double armCursor() const;              ///< tau where the arm is; differs from cursor() after scrub().
   double rate() const;                   ///< d tau / dt now.
   double speed() const;                  ///< Wanted factor, as set.
   double duration() const;

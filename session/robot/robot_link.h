@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include <QObject>
 #include <QString>
@@ -23,10 +24,13 @@ class RobotLink : public QObject {
  public:
   /// Borrows the runtime, which must outlive this.
   explicit RobotLink(RobotRuntime& runtime, QObject* parent = nullptr);
+  ~RobotLink() override;                           ///< Waits for a restart that is under way.
 
   RobotRuntime& runtime() { return m_runtime; }
   /// The status of the last poll.
   const RuntimeStatus& status() const { return m_status; }
+  /// RobotRuntime::restart() on a thread of its own; restarted() tells the outcome.  No effect while one runs.
+  void restart();
 
  Q_SIGNALS:
   void polled();                                   ///< Every poll, after the others.
@@ -36,6 +40,7 @@ class RobotLink : public QObject {
   void jointStateChanged();
   void frameArrived(const QString& camera);
   void noticed(const QString& text);               ///< A new sentence for the operator.
+  void restarted(bool ok, const QString& text);    ///< The end of restart(), with the reason when it failed.
 
  private:
   void poll();
@@ -46,6 +51,8 @@ class RobotLink : public QObject {
   RuntimeStatus m_status;
   std::shared_ptr<const JointState> m_joints;
   std::map<std::string, std::uint64_t> m_frames;
+  std::thread m_restart;
+  bool m_restarting = false;
 };
 
 }  // namespace longarm::session

@@ -4,6 +4,7 @@
 /// RobotRuntime: the robot as the session sees it.  Owns the devices, the gate, the player and the motion thread;
 /// starts and restarts the virtual robot.  The only code above the drivers that can make an arm move.
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -48,7 +49,8 @@ struct DeviceSet {
   std::shared_ptr<hardware::Gripper> gripper;
   std::map<std::string, std::shared_ptr<hardware::PanTilt>> pan_tilts;   ///< By PanTiltSpec::name.
   std::map<std::string, std::shared_ptr<hardware::Camera>> cameras;      ///< By CameraSpec::name.
-  std::function<void()> send_heartbeat;            ///< Called at 10 Hz while the gates of RuntimeOptions allow it.
+  /// Heartbeats go out while the clock is below this; the motion thread keeps it ahead while all is well [s].
+  std::shared_ptr<std::atomic<double>> alive_until_s;
   ServiceCall call_service;
 };
 /// Makes the devices of a workcell that answer at `url`.  `clock` outlives them.
@@ -62,10 +64,11 @@ struct RuntimeOptions {
   unsigned seed = 1;
   bool ideal = false;                              ///< No offsets, noise, backlash or latency.
   bool cameras = true;                             ///< false: the virtual robot renders nothing.
+  bool stream_cameras = true;                      ///< All cameras at once; false: those that streamCamera() asks for.
   bool lockstep = false;                           ///< No threads, no real time: step() drives everything.
   bool gui_watchdog = true;                        ///< Needs touchGui(); programs without a window switch it off.
-  double gui_stop_jog_s = 0.25;                    ///< Window silent for longer: jog and servo stop.
-  double gui_stop_motion_s = 0.5;                  ///< Window silent for longer: trajectories pause, heartbeat ends.
+  double gui_stop_jog_s = 0.25;                    ///< Window silent for longer: jog and servo stop, heartbeat pauses.
+  double gui_stop_motion_s = 0.5;                  ///< Window silent for longer: trajectories pause.
   double start_tolerance = 0.01;                   ///< Measured joints against a plan's start [rad or m].
   std::string virtual_robot;                       ///< Executable; empty: $LONGARM_VIRTUAL_ROBOT, else beside this one.
   std::function<std::string(const std::string& url)> through;   ///< Puts a proxy in the way; empty: none.
@@ -157,6 +160,8 @@ class RobotRuntime {
   Result<PanTiltState> panTilt(const std::string& name) const;
   /// Newest encoded picture of a camera; null before the first, or if there is no such camera.
   std::shared_ptr<const hardware::Frame> cameraFrame(const std::string& name) const;
+  /// Starts or ends the pictures of one camera (each costs the robot and the link time).  kNotFound.
+  Status streamCamera(const std::string& name, bool on);
   Status setZoom(const std::string& camera, double zoom01);
 
   /// The window is alive; called by its 30 Hz timer.
@@ -166,7 +171,8 @@ class RobotRuntime {
   /// Process id of the virtual robot, 0 if there is none.
   int virtualRobotPid() const;
   Result<std::string> callService(const std::string& service, const std::string& arguments, double timeout_s = 2);
-  /// Called for every event, from the thread it happens on; must be quick and must not call back.
+  /// Called for every event, on the motion thread (in step() in lockstep; the last ones by restart() and the
+  /// destructor); must be quick and must not call stop-and-wait functions such as restart().
   void onEvent(std::function<void(const RuntimeEvent&)> callback);
 
   /// Lockstep only: advances robot and console together in 20 ms steps.  kDisconnected when the robot is gone.

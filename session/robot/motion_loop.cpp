@@ -1,0 +1,186 @@
+#include "session/robot/motion_loop.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/text.h"
+
+namespace longarm::session {
+namespace {
+
+using planning::PlayerState;
+
+constexpr const char* kOwner = "player";
+
+bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || state == PlayerState::kPausing; }
+
+bool isLinkTrouble(ErrorCode code) { return code == ErrorCode::kStale || code == ErrorCode::kDisconnected; }
+
+}  // namespace
+
+MotionLoop::MotionLoop(std::shared_ptr<hardware::RobotArm> arm, hardware::MotionGate& gate,
+                       std::vector<std::string> joints, const MotionLimits& limits, const Clock& clock,
+                       MotionLoopOptions options, Report report)
+    : m_arm(std::move(arm)),
+      m_gate(gate),
+      m_joints(std::move(joints)),
+      m_clock(clock),
+      m_options(options),
+      m_report(std::move(report)),
+      m_gui_s(clock.now_s()),
+      m_player(limits, options.player) {}
+
+double MotionLoop::guiAge() const { return m_options.gui_watchdog ? m_clock.now_s() - m_gui_s.load() : 0; }
+
+Result<Eigen::VectorXd> MotionLoop::measured() const {
+  const auto state = m_arm->jointState();
+  if (!state) return Error{ErrorCode::kStale, "the robot has not told its joints yet"};
+  const double age = m_clock.now_s() - state->stamp_s;
+  if (age > m_options.max_state_age_s) {
+    return Error{ErrorCode::kStale, "the newest joint state is " + formatFixed(age, 2) + " s old (limit " +
+                                        formatNumber(m_options.max_state_age_s) + " s); check the link"};
+  }
+  return state->positionsOf(m_joints);
+}
+
+// Whether the arm stands where the loaded path is at tau.
+Status MotionLoop::checkAtPath(double tau) const {
+  const auto here = measured();
+  if (!here) return here.error();
+  const Eigen::VectorXd path = m_player.trajectory().sample(tau).positions;
+  Eigen::Index worst = 0;
+  const double off = (*here - path).cwiseAbs().maxCoeff(&worst);
+  if (off <= m_options.start_tolerance) return {};
+  return {ErrorCode::kStale,
+          "joint " + m_joints[static_cast<std::size_t>(worst)] + " is at " + formatFixed((*here)[worst], 4) +
+              ", the path at " + formatFixed(path[worst], 4) + " (limit of the difference " +
+              formatNumber(m_options.start_tolerance) + "); plan again from where the robot is"};
+}
+
+Status MotionLoop::load(const Trajectory& trajectory) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  if (isMoving(m_player.state()))
+    return {ErrorCode::kRefused, "load: the arm is moving; pause or stop it first"};
+  if (trajectory.joint_names != m_joints) {
+    return {ErrorCode::kInvalidInput, "trajectory: its joints are not those of the arm, in the arm's order"};
+  }
+  const double speed = m_player.speed();
+  if (auto status = m_player.load(trajectory); !status) {
+    m_player.clear();
+    return status;
+  }
+  m_player.setSpeed(speed);
+  if (auto status = checkAtPath(0); !status) {
+    m_player.clear();
+    return status;
+  }
+  m_notice.clear();
+  return {};
+}
+
+void MotionLoop::unload() {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  if (!isMoving(m_player.state())) m_player.clear();
+}
+
+Status MotionLoop::play() {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  if (m_player.state() == PlayerState::kEmpty) return {ErrorCode::kRefused, "play: no motion is loaded"};
+  if (m_gate.stopped()) return {ErrorCode::kRefused, "play: STOP is latched; reset it first"};
+  if (m_stop_seen.load()) return {ErrorCode::kRefused, "play: the stop is still being carried out"};
+  if (m_player.state() == PlayerState::kHalted) {
+    const auto here = measured();
+    if (!here) return here.error();
+    if (auto status = m_player.resumeFrom(*here, m_options.start_tolerance); !status) return status;
+  } else if (!isMoving(m_player.state())) {
+    if (auto status = checkAtPath(m_player.armCursor()); !status) return status;
+  }
+  if (auto status = m_gate.acquire(kOwner); !status) return status;
+  m_player.play();
+  m_notice.clear();
+  return {};
+}
+
+void MotionLoop::pause() {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  m_player.pause();
+}
+
+void MotionLoop::setSpeed(double factor) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  m_player.setSpeed(factor);
+}
+
+Status MotionLoop::scrub(double cursor_s) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  return m_player.scrub(cursor_s);
+}
+
+Trajectory MotionLoop::trajectory() const {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  return m_player.trajectory();
+}
+
+MotionState MotionLoop::state() const {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  return {m_player.state(), m_player.cursor(), m_player.duration(),
+          m_player.rate(),  m_player.speed(),  m_notice};
+}
+
+void MotionLoop::tick() {
+  watchGui();
+  PlayerState now;
+  Horizon horizon;
+  {
+    std::lock_guard<std::mutex> lock(m_mutex);
+    if (m_stop_seen.exchange(false)) m_player.halt();
+    horizon = m_player.tick(m_clock.now_s());
+    now = m_player.state();
+    if (!isMoving(now)) m_gate.release(kOwner);
+  }
+  if (!horizon.points.empty()) submit(horizon);
+  m_gate.watch();
+  reportChange(std::exchange(m_last, now), now);
+}
+
+void MotionLoop::watchGui() {
+  const double age = guiAge();
+  if (age < m_options.gui_stop_motion_s) return;
+  const std::string text = "the window has not answered for " + formatFixed(age, 1) + " s: motion paused";
+  {
+    std::lock_guard<std::mutex> lock(m_mutex);
+    if (m_player.state() != PlayerState::kPlaying) return;
+    m_player.pause();
+    m_notice = text;
+  }
+  m_report("pause", "watchdog", text);
+}
+
+void MotionLoop::submit(const Horizon& horizon) {
+  const auto status = m_gate.submit(horizon);
+  if (status || m_gate.stopped()) return;
+  if (isLinkTrouble(status.error().code)) {
+    m_gate.stop("link", status.error().message);
+    haltWith("fault", "link", status.error().message);
+  } else {
+    haltWith("refused", "gate", status.error().message);
+  }
+}
+
+void MotionLoop::haltWith(const std::string& kind, const std::string& source, const std::string& text) {
+  {
+    std::lock_guard<std::mutex> lock(m_mutex);
+    m_player.halt();
+    m_notice = text;
+  }
+  m_report(kind, source, text);
+}
+
+void MotionLoop::reportChange(PlayerState before, PlayerState after) const {
+  if (before == after || !isMoving(before)) return;
+  if (after == PlayerState::kDone) m_report("done", kOwner, "the motion has reached its end");
+  if (after == PlayerState::kReady) m_report("done", kOwner, "the motion is back at its start");
+  if (after == PlayerState::kPaused) m_report("pause", kOwner, "the arm stands still on the path");
+}
+
+}  // namespace longarm::session

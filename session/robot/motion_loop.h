@@ -1,0 +1,91 @@
+#pragma once
+
+/// @file
+/// MotionLoop: one cycle of the motion thread.  Player to gate, and everything that must end a motion.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/clock.h"
+#include "core/motion.h"
+#include "core/result.h"
+#include "hardware/device.h"
+#include "hardware/motion_gate.h"
+#include "planning/player/player.h"
+
+namespace longarm::session {
+
+struct MotionLoopOptions {
+  double start_tolerance = 0.01;  ///< [rad or m]
+  double max_state_age_s = 0.2;
+  bool gui_watchdog = true;
+  double gui_stop_jog_s = 0.25, gui_stop_motion_s = 0.5;
+  planning::PlayerOptions player;
+};
+
+struct MotionState {
+  planning::PlayerState player = planning::PlayerState::kEmpty;
+  double cursor = 0, duration = 0, rate = 0, speed = 1;
+  std::string notice;
+};
+
+/// Time comes from the clock that is given, so that a thread or a lockstep simulation drives it alike.
+/// Thread-safe; tick() is called from one thread only.
+class MotionLoop {
+ public:
+  /// Called for what happens: kind, source, text, as RuntimeEvent.  No lock of the loop is held.
+  using Report =
+      std::function<void(const std::string& kind, const std::string& source, const std::string& text)>;
+
+  /// Borrows gate and clock, which must outlive it.
+  MotionLoop(std::shared_ptr<hardware::RobotArm> arm, hardware::MotionGate& gate,
+             std::vector<std::string> joints, const MotionLimits& limits, const Clock& clock,
+             MotionLoopOptions options, Report report);
+
+  /// As RobotRuntime's functions of the same names.
+  Status load(const Trajectory& trajectory);
+  void unload();
+  Status play();
+  void pause();
+  void setSpeed(double factor);
+  Status scrub(double cursor_s);
+  Trajectory trajectory() const;
+  MotionState state() const;
+
+  void touchGui() { m_gui_s.store(m_clock.now_s()); }
+  /// Whether the window has been alive lately enough to tell the robot so.
+  bool heartbeatAllowed() const { return guiAge() < m_options.gui_stop_jog_s; }
+  /// STOP was pressed: the player halts in the next tick.  Any thread; no lock.
+  void noteStop() noexcept { m_stop_seen.store(true); }
+
+  /// One cycle, about every 20 ms.
+  void tick();
+
+ private:
+  double guiAge() const;
+  Status checkAtPath(double tau) const;
+  Result<Eigen::VectorXd> measured() const;
+  void watchGui();
+  void submit(const Horizon& horizon);
+  void haltWith(const std::string& kind, const std::string& source, const std::string& text);
+  void reportChange(planning::PlayerState before, planning::PlayerState after) const;
+
+  const std::shared_ptr<hardware::RobotArm> m_arm;
+  hardware::MotionGate& m_gate;
+  const std::vector<std::string> m_joints;
+  const Clock& m_clock;
+  const MotionLoopOptions m_options;
+  const Report m_report;
+  std::atomic<double> m_gui_s;
+  std::atomic<bool> m_stop_seen{false};
+  planning::PlayerState m_last = planning::PlayerState::kEmpty;  // After the last tick; tick()'s thread only.
+  mutable std::mutex m_mutex;  // Guards what follows; never held while something is sent.
+  planning::Player m_player;
+  std::string m_notice;
+};
+
+}  // namespace longarm::session
