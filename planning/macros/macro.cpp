@@ -1,0 +1,33 @@
+#include "planning/macros/macro.h"
+
+#include <algorithm>
+
+#include "planning/macros/canned_motion.h"
+#include "planning/macros/grab_pipe.h"
+
+namespace longarm::planning {
+
+std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
+  std::vector<std::unique_ptr<Macro>> out;
+  // The usual ones in the order an operator uses them, then the workcell's own by name.
+  std::vector<std::string> names{"home", "stow", "ready", "look_ahead"};
+  const auto usual = static_cast<long>(names.size());
+  for (const auto& [name, joints] : workcell.poses) {
+    if (std::find(names.begin(), names.begin() + usual, name) == names.begin() + usual) names.push_back(name);
+  }
+  for (const auto& name : names) {
+    const auto pose = workcell.poses.find(name);
+    if (pose != workcell.poses.end()) out.push_back(std::make_unique<CannedMotion>(name, pose->second));
+  }
+  out.push_back(std::make_unique<GrabPipe>());
+  return out;
+}
+
+const Macro* findMacro(const std::vector<std::unique_ptr<Macro>>& macros, const std::string& name) {
+  for (const auto& macro : macros) {
+    if (macro->info().name == name) return macro.get();
+  }
+  return nullptr;
+}
+
+}  // namespace longarm::planning
