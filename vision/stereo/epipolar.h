@@ -36,10 +36,10 @@ struct EpipolarCurve {
 Result<EpipolarCurve> epipolarCurve(const View& from, const Eigen::Vector2d& pixel, const View& to,
                                     const EpipolarOptions& options = {});
 
-/// The raw kernel behind the curve: n samples at inverse depths uniform from 1/near to 1/far, as pixels of `to`
-/// (not clipped; NaN where a sample is behind `to` or beyond its lens' monotone range).
-/// @returns false if the pixel has no ray.  @pre 0 < near < far; u and v hold n numbers, n >= 2.
+/// The raw curve for the quickest redraw: n samples at inverse depths uniform from 1/near to 1/far, as pixels of
+/// `to`, not clipped to the picture.  `visible[i]` is false behind `to` or beyond its lens' monotone range.
+/// @returns false if the pixel has no ray.  @pre 0 < near < far; n >= 2; the arrays hold n.  Pure function.
 bool sampleEpipolarCurve(const View& from, const Eigen::Vector2d& pixel, const View& to, double near_m,
-                         double far_m, int n, double* u, double* v);
+                         double far_m, int n, double* u, double* v, bool* visible);
 
 }  // namespace longarm::vision

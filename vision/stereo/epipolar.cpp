@@ -1,0 +1,213 @@
+#include "vision/stereo/epipolar.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.h"
+#include "vision/camera/lens.h"
+#include "vision/stereo/epipolar_kernel.h"
+
+namespace longarm::vision {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kNearest = 0.05;        // z in the second camera [m]
+constexpr int kProbes = 257;             // first look for what can be seen; about 5 px apart on a stereo head
+constexpr int kMaxDepth = 10;            // of the subdivision
+constexpr std::size_t kMaxPoints = 4096;
+
+internal::LoopCamera loopCamera(const CameraModel& c) {
+  return {c.fx, c.fy, c.skew, c.cx, c.cy, c.distortion[0], c.distortion[1], c.distortion[2], c.distortion[3],
+          c.distortion[4]};
+}
+
+// The ray of the first view's pixel as the second camera sees it: p = (a + w t) / w at inverse depth w.
+class Ray {
+ public:
+  Ray(const View& from, const Vector2d& n, const View& to) : m_camera(to.camera) {
+    const Eigen::Matrix3d R_CW = to.X_WC.linear().transpose();
+    m_a = R_CW * (from.X_WC.linear() * Vector3d(n.x(), n.y(), 1));
+    m_t = R_CW * (from.X_WC.translation() - to.X_WC.translation());
+    m_max_radius2 = internal::monotoneRadius2(to.camera);
+  }
+
+  const Vector3d& a() const { return m_a; }
+  const Vector3d& t() const { return m_t; }
+  double maxRadius2() const { return m_max_radius2; }
+
+  bool sees(double w, Vector2d* pixel) const {
+    const Vector3d p = m_a + w * m_t;
+    if (!(p.z() > kNearest * w)) return false;
+    const Vector2d n = p.head<2>() / p.z();
+    if (!(n.squaredNorm() <= m_max_radius2)) return false;
+    *pixel = m_camera.pixelOfNormalised(n);
+    return m_camera.containsPixel(*pixel);
+  }
+
+ private:
+  const CameraModel& m_camera;
+  Vector3d m_a, m_t;
+  double m_max_radius2 = 0;
+};
+
+struct Run {
+  int first = -1, last = -1;
+  double length_px = -1;
+};
+
+// The longest visible stretch among the probes.
+Run longestRun(const std::array<Vector2d, kProbes>& pixels, const std::array<bool, kProbes>& seen) {
+  Run best, run;
+  for (int i = 0; i < kProbes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!seen[k]) {
+      run = {};
+      continue;
+    }
+    if (run.first < 0) run = {i, i, 0};
+    if (run.last != i) run.length_px += (pixels[k] - pixels[k - 1]).norm();
+    run.last = i;
+    if (run.length_px > best.length_px) best = run;
+  }
+  return best;
+}
+
+// Moves from a seen inverse depth towards a hidden one as far as the pixel can be seen.
+double edgeOfSight(const Ray& ray, double seen, double hidden) {
+  Vector2d pixel;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (seen + hidden);
+    (ray.sees(middle, &pixel) ? seen : hidden) = middle;
+  }
+  return seen;
+}
+
+struct Node {
+  double w;
+  Vector2d pixel;
+};
+
+// Appends what lies between two nodes and the second one.  The middle of the arc must meet the middle of the
+// chord: that bounds the sag and also makes inverse depth linear along the chord.
+void subdivide(const Ray& ray, const Node& a, const Node& b, double tolerance, int depth, std::vector<Node>* nodes) {
+  Node middle{0.5 * (a.w + b.w), Vector2d::Zero()};
+  const bool split = depth < kMaxDepth && nodes->size() < kMaxPoints && ray.sees(middle.w, &middle.pixel) &&
+                     (middle.pixel - 0.5 * (a.pixel + b.pixel)).squaredNorm() > tolerance * tolerance;
+  if (split) {
+    subdivide(ray, a, middle, tolerance, depth + 1, nodes);
+    subdivide(ray, middle, b, tolerance, depth + 1, nodes);
+  } else {
+    nodes->push_back(b);
+  }
+}
+
+std::vector<EpipolarPoint> ticksBetween(const Ray& ray, double near_m, double far_m) {
+  std::vector<EpipolarPoint> ticks;
+  for (int decade = -3; decade <= 4; ++decade) {
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double depth = digit * std::pow(10.0, decade);
+      EpipolarPoint tick{{}, depth};
+      if (depth >= near_m && depth <= far_m && ray.sees(1 / depth, &tick.pixel)) ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
+Status checkInput(const View& from, const View& to, const EpipolarOptions& options) {
+  if (from.parent != to.parent) {
+    return {ErrorCode::kInvalidInput, "view \"" + from.name + "\" is placed in \"" + from.parent + "\" and view \"" +
+                                          to.name + "\" in \"" + to.parent + "\"; views must share one parent frame"};
+  }
+  if (!(options.min_depth > 0 && options.min_depth < options.max_depth && std::isfinite(options.max_depth))) {
+    return {ErrorCode::kInvalidInput, "depth range " + formatNumber(options.min_depth) + " to " +
+                                          formatNumber(options.max_depth) + " m; expected 0 < min < max"};
+  }
+  if (!(options.max_sag_px > 0)) {
+    return {ErrorCode::kInvalidInput, "max_sag_px is " + formatNumber(options.max_sag_px) + "; expected above 0"};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<EpipolarPoint> EpipolarCurve::nearest(const Vector2d& pixel) const {
+  if (points.empty()) return std::nullopt;
+  EpipolarPoint best = points.front();
+  double best_distance2 = (pixel - best.pixel).squaredNorm();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const EpipolarPoint& a = points[i - 1];
+    const EpipolarPoint& b = points[i];
+    const Vector2d chord = b.pixel - a.pixel;
+    const double length2 = chord.squaredNorm();
+    const double s = length2 > 0 ? std::clamp((pixel - a.pixel).dot(chord) / length2, 0.0, 1.0) : 0;
+    const Vector2d foot = a.pixel + s * chord;
+    const double distance2 = (pixel - foot).squaredNorm();
+    if (distance2 >= best_distance2) continue;
+    best_distance2 = distance2;
+    best = {foot, 1 / ((1 - s) / a.depth + s / b.depth)};
+  }
+  return best;
+}
+
+bool sampleEpipolarCurve(const View& from, const Vector2d& pixel, const View& to, double near_m, double far_m, int n,
+                         double* u, double* v, bool* visible) {
+  constexpr int kBlock = 128;
+  Vector2d start;
+  internal::Distorted at;
+  if (!internal::undistortPixel(from.camera, internal::monotoneRadius2(from.camera), pixel, &start, &at)) return false;
+  const Ray ray(from, start, to);
+  const internal::LoopCamera camera = loopCamera(to.camera);
+  const double first = 1 / near_m, step = (1 / far_m - first) / (n - 1);
+  const double max_radius2 = ray.maxRadius2();
+  double w[kBlock], z[kBlock], r2[kBlock];
+  for (int done = 0; done < n; done += kBlock) {
+    const int count = std::min(kBlock, n - done);
+    for (int i = 0; i < count; ++i) w[i] = first + step * (done + i);
+    internal::projectAlongRay(camera, ray.a().data(), ray.t().data(), w, count, u + done, v + done, z, r2);
+    for (int i = 0; i < count; ++i) visible[done + i] = (z[i] > kNearest * w[i]) & (r2[i] <= max_radius2);
+  }
+  return true;
+}
+
+Result<EpipolarCurve> epipolarCurve(const View& from, const Vector2d& pixel, const View& to,
+                                    const EpipolarOptions& options) {
+  if (auto status = checkInput(from, to, options); !status) return status.error();
+  const auto start = from.camera.normalisedOfPixel(pixel);
+  if (!start) return Error{ErrorCode::kInvalidInput, "view \"" + from.name + "\": " + start.error().message};
+  const Ray ray(from, *start, to);
+  const double near_w = 1 / options.min_depth, far_w = 1 / options.max_depth;
+  const auto probe = [&](int i) { return near_w + (far_w - near_w) * i / (kProbes - 1); };
+  std::array<Vector2d, kProbes> pixels;
+  std::array<bool, kProbes> seen{};
+  for (int i = 0; i < kProbes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    seen[k] = ray.sees(probe(i), &pixels[k]);
+  }
+  const Run run = longestRun(pixels, seen);
+  EpipolarCurve curve;
+  if (run.first < 0) return curve;
+  const double w0 = run.first == 0 ? near_w : edgeOfSight(ray, probe(run.first), probe(run.first - 1));
+  const double w1 = run.last == kProbes - 1 ? far_w : edgeOfSight(ray, probe(run.last), probe(run.last + 1));
+
+  std::vector<Node> corners{{w0, Vector2d::Zero()}};
+  const double kept = 1e-12 * near_w;
+  for (int i = run.first; i <= run.last; i += 8) {
+    if (probe(i) < w0 - kept && probe(i) > w1 + kept) corners.push_back({probe(i), pixels[static_cast<std::size_t>(i)]});
+  }
+  corners.push_back({w1, Vector2d::Zero()});
+  ray.sees(w0, &corners.front().pixel);
+  ray.sees(w1, &corners.back().pixel);
+  std::vector<Node> nodes{corners.front()};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    subdivide(ray, corners[i - 1], corners[i], options.max_sag_px, 0, &nodes);
+  }
+  curve.points.reserve(nodes.size());
+  for (const auto& node : nodes) curve.points.push_back({node.pixel, 1 / node.w});
+  curve.ticks = ticksBetween(ray, curve.points.front().depth, curve.points.back().depth);
+  return curve;
+}
+
+}  // namespace longarm::vision
