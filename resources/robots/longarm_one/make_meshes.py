@@ -9,6 +9,8 @@ import math
 import os
 import struct
 
+from make_robot import FOREARM, MAST_X, ROLL_AT, SHOULDER, UPPER
+
 ROUND = 24  # Sides of what is round.
 
 
@@ -92,7 +94,7 @@ def hull():
 
 def deck():
     plate = moved(prism(rectangle(0.62, 0.5, 0.05), 0.015, 0.005), dz=0.235)
-    box = moved(prism(rectangle(0.13, 0.2, 0.02), 0.045, 0.01), dx=-0.24, dz=0.295)
+    box = moved(prism(rectangle(0.13, 0.2, 0.02), 0.045, 0.01), dx=MAST_X + 0.005, dz=0.295)
     return plate + box
 
 
@@ -148,14 +150,14 @@ def mast():
 
 
 def turret():
-    body = lathe([(0.072, 0.0), (0.072, 0.06), (0.06, 0.1), (0.05, 0.14), (0.04, 0.17)])
-    return body + moved(barrel(0.062, 0.074), dz=0.17)
+    body = lathe([(0.074, 0.0), (0.074, 0.035), (0.066, 0.06), (0.05, SHOULDER)])
+    return body + moved(barrel(0.062, 0.074), dz=SHOULDER)
 
 
 def upper_arm():
-    tube = lathe([(0.035, -0.02), (0.054, 0.03), (0.057, 0.09), (0.047, 0.2), (0.045, 0.36), (0.054, 0.46),
-                  (0.05, 0.5), (0.035, 0.53)])
-    return tube + moved(barrel(0.056, 0.07), dz=0.52)
+    tube = lathe([(0.035, -0.02), (0.054, 0.03), (0.057, 0.09), (0.047, 0.2), (0.045, UPPER - 0.16),
+                  (0.054, UPPER - 0.06), (0.05, UPPER - 0.02), (0.035, UPPER + 0.01)])
+    return tube + moved(barrel(0.056, 0.07), dz=UPPER)
 
 
 def elbow():
@@ -163,8 +165,9 @@ def elbow():
 
 
 def forearm():
-    tube = lathe([(0.044, 0.0), (0.044, 0.03), (0.037, 0.12), (0.034, 0.19), (0.026, 0.23)])
-    return tube + moved(barrel(0.043, 0.047), dz=0.24)
+    wrist_at = FOREARM - ROLL_AT
+    tube = lathe([(0.044, 0.0), (0.044, 0.03), (0.037, 0.12), (0.034, wrist_at - 0.05), (0.026, wrist_at - 0.01)])
+    return tube + moved(barrel(0.043, 0.047), dz=wrist_at)
 
 
 def wrist():

@@ -18,10 +18,10 @@ COLOURS = {
 
 HALF_PI = "1.5707963267948966"
 
-# Shoulder pitch height, lengths of the arm [m].
-PEDESTAL_TOP, SHOULDER, UPPER, FOREARM, ROLL_AT = 0.33, 0.17, 0.52, 0.48, 0.24
+# Top of the pedestal, from there to the shoulder's pitch axis, upper arm, forearm, where the forearm rolls [m].
+PEDESTAL_TOP, SHOULDER, UPPER, FOREARM, ROLL_AT = 0.33, 0.10, 0.56, 0.50, 0.24
 WRIST_TO_FLANGE, FLANGE_TO_TIP = 0.07, 0.15
-ARM_X, MAST_X, MAST_TOP = 0.12, -0.24, 0.95
+ARM_X, MAST_X, MAST_TOP = 0.04, -0.26, 0.95
 
 
 def origin(xyz=(0, 0, 0), rpy=(0, 0, 0)):
@@ -104,7 +104,7 @@ def arm():
         link("arm_1_link",
              visual(mesh("turret"), "shell"),
              visual(cylinder(0.072, 0.02), "orange", (0, 0, 0.012)),
-             collision(cylinder(0.075, 0.12), (0, 0, 0.06)),
+             collision(cylinder(0.075, 0.07), (0, 0, 0.035)),
              collision(cylinder(0.062, 0.15), (0, 0, SHOULDER), (HALF_PI, 0, 0))),
         moving("arm_1_joint", "revolute", "base_link", "arm_1_link", "0 0 1", (-2.9, 2.9, rpm, 200),
                (ARM_X, 0, PEDESTAL_TOP)),
@@ -224,10 +224,10 @@ def robot(name, head):
 ARM_JOINTS = [f"arm_{i}_joint" for i in range(1, 7)]
 
 POSES = {
-    "home": (0.0, -0.3, 2.2, 0.0, 1.2, 0.0),
-    "stow": (0.0, -0.3, 2.4, 0.0, 1.2, 0.0),
+    "home": (2.43, 0.56, 2.17, 0.0, 1.35, 0.0),
+    "stow": (2.22, 0.79, 2.33, 0.0, 1.77, 0.0),
     "ready": (0.0, -0.2, 1.9, 0.0, 1.44, 0.0),
-    "look_ahead": (0.0, -0.35, 2.2, 0.0, -0.28, 0.0),
+    "look_ahead": (0.0, -0.15, 2.15, 0.0, -0.43, 0.0),
 }
 
 # Bodies that stand still to each other, and neighbours that touch at their joint.
