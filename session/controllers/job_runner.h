@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -29,9 +30,9 @@ class JobRunner final {
   /// gone by then, `done` is not called.  An exception in `work` becomes kInternal.  Call on the GUI thread.
   template <typename T>
   void run(QObject* context, std::function<Result<T>()> work, std::function<void(Result<T>)> done) {
-    auto result = std::make_shared<Result<T>>(ErrorCode::kCancelled, "The job did not run.");
-    start(context, [result, work = std::move(work)] { *result = guarded<T>(work); },
-          [result, done = std::move(done)] { done(std::move(*result)); });
+    auto result = std::make_shared<std::optional<Result<T>>>();
+    start(context, [result, work = std::move(work)] { result->emplace(guarded<T>(work)); },
+          [result, done = std::move(done)] { done(std::move(**result)); });
   }
 
   /// Waits until nothing is under way.  Results still need an event loop to arrive.

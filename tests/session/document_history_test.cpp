@@ -1,0 +1,277 @@
+// Undo and redo: labels, limits, the clean mark, and the state restored bit for bit.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "session/commands/edit_history.h"
+#include "session/commands/sketch_commands.h"
+#include "tests/session/synthetic_views.h"
+
+namespace longarm::session {
+namespace {
+
+using tests::Bench;
+using tests::trueLine;
+
+TEST(EditHistory, UndoesAndRedoesWithLabels) {
+  Bench bench;
+  const DocumentState empty = bench.document.state();
+  bench.history.push(addItem(trueLine(bench, 1)));
+  const DocumentState with_line = bench.document.state();
+  EXPECT_EQ(bench.history.undoLabel(), "Add line 'Line 1'");
+  EXPECT_EQ(bench.history.redoLabel(), "");
+  bench.history.undo();
+  EXPECT_EQ(bench.document.state(), empty);
+  EXPECT_EQ(bench.history.redoLabel(), "Add line 'Line 1'");
+  bench.history.redo();
+  EXPECT_EQ(bench.document.state(), with_line);
+  EXPECT_FALSE(bench.history.canRedo());
+}
+
+TEST(EditHistory, DoesNothingAtItsEnds) {
+  Bench bench;
+  bench.history.undo();
+  bench.history.redo();
+  EXPECT_EQ(bench.history.position(), 0u);
+}
+
+TEST(EditHistory, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  bench.history.push(renameItem(bench.document, {1}, "a"));
+  bench.history.undo();
+  bench.history.push(renameItem(bench.document, {1}, "b"));
+  EXPECT_FALSE(bench.history.canRedo());
+  EXPECT_EQ(bench.history.size(), 2u);
+}
+
+TEST(EditHistory, KeepsAtLeastAHundredStepsAndForgetsTheOldest) {
+  Bench bench;
+  EditHistory small(bench.document, 5);
+  EXPECT_EQ(small.limit(), 100u);
+  small.push(addItem(trueLine(bench, 1)));
+  for (int i = 0; i < 150; ++i) small.push(renameItem(bench.document, {1}, "name " + std::to_string(i)));
+  EXPECT_EQ(small.size(), 100u);
+  while (small.canUndo()) small.undo();
+  EXPECT_EQ(bench.document.item({1})->name, "name 49");
+}
+
+TEST(EditHistory, KnowsTheCleanState) {
+  Bench bench;
+  EXPECT_TRUE(bench.history.isClean());
+  bench.history.push(addItem(trueLine(bench, 1)));
+  EXPECT_FALSE(bench.history.isClean());
+  bench.history.markClean();
+  bench.history.push(renameItem(bench.document, {1}, "a"));
+  EXPECT_FALSE(bench.history.isClean());
+  bench.history.undo();
+  EXPECT_TRUE(bench.history.isClean());
+  bench.history.undo();
+  EXPECT_FALSE(bench.history.isClean());
+  bench.history.push(addItem(trueLine(bench, 2)));
+  EXPECT_FALSE(bench.history.isClean()) << "the saved state can no longer be reached";
+  bench.history.undo();
+  EXPECT_FALSE(bench.history.isClean());
+}
+
+CommandPtr nudge(const Document& document, double by) {
+  SketchItem item = *document.item({1});
+  SketchPick pick = *item.pick({1}, 0);
+  pick.pixel.x() += by;
+  item.setPick({1}, 0, pick);
+  return replaceItem(document, item, "Nudge", "nudge 1 0 1");
+}
+
+TEST(EditHistory, MakesOneStepOfNudgesInARow) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  const DocumentState before = bench.document.state();
+  for (int i = 0; i < 20; ++i) bench.history.push(nudge(bench.document, 0.1));
+  EXPECT_EQ(bench.history.size(), 2u);
+  const DocumentState after = bench.document.state();
+  bench.history.undo();
+  EXPECT_EQ(bench.document.state(), before);
+  bench.history.redo();
+  EXPECT_EQ(bench.document.state(), after);
+}
+
+TEST(EditHistory, KeepsNudgesApartWhenSealedOrClean) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  bench.history.push(nudge(bench.document, 0.1));
+  bench.history.seal();
+  bench.history.push(nudge(bench.document, 0.1));
+  EXPECT_EQ(bench.history.size(), 3u);
+  bench.history.markClean();
+  bench.history.push(nudge(bench.document, 0.1));
+  EXPECT_EQ(bench.history.size(), 4u);
+  bench.history.undo();
+  EXPECT_TRUE(bench.history.isClean());
+  bench.history.push(nudge(bench.document, 0.1));
+  EXPECT_EQ(bench.history.size(), 4u);
+}
+
+TEST(SketchCommands, AnswerNullWhenNothingWouldChange) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  EXPECT_EQ(renameItem(bench.document, {1}, "Line 1"), nullptr);
+  EXPECT_EQ(renameItem(bench.document, {1}, ""), nullptr);
+  EXPECT_EQ(hideItem(bench.document, {1}, false), nullptr);
+  EXPECT_EQ(lockItem(bench.document, {9}, true), nullptr);
+  EXPECT_EQ(removeItems(bench.document, {{9}}), nullptr);
+  EXPECT_EQ(duplicateItem(bench.document, {9}), nullptr);
+  EXPECT_EQ(moveItem(bench.document, {1}, 5), nullptr);
+  EXPECT_EQ(removeSnapshot(bench.document, {9}), nullptr);
+  EXPECT_EQ(showSnapshot(bench.document, PaneSide::kLeft, {1}), nullptr);
+  EXPECT_EQ(addSnapshots(bench.document, {}), nullptr);
+  EXPECT_EQ(composite("nothing", {}), nullptr);
+}
+
+TEST(SketchCommands, TakeThePicksOfAPictureWithItAndBringThemBack) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  const DocumentState before = bench.document.state();
+  bench.history.push(removeSnapshot(bench.document, {2}));
+  EXPECT_EQ(bench.document.item({1})->picks.count({2}), 0u);
+  EXPECT_FALSE(bench.document.paneSnapshotId(PaneSide::kRight).valid());
+  EXPECT_FALSE(bench.document.measurement({1}).feature);
+  bench.history.undo();
+  EXPECT_EQ(bench.document.state(), before);
+  EXPECT_TRUE(bench.document.measurement({1}).feature);
+}
+
+TEST(SketchCommands, SwapThePanesWhenTheOtherOneHasThePicture) {
+  Bench bench;
+  bench.history.push(showSnapshot(bench.document, PaneSide::kLeft, {2}));
+  EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kLeft), SnapshotId{2});
+  EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kRight), SnapshotId{1});
+}
+
+TEST(SketchCommands, ShowASinglePictureWhereItWasAskedFor) {
+  Bench bench;
+  bench.history.push(addSnapshots(bench.document, {tests::snapshotOf(3, bench.scene.left)}, PaneSide::kRight));
+  EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kLeft), SnapshotId{1});
+  EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kRight), SnapshotId{3});
+  bench.history.undo();
+  EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kRight), SnapshotId{2});
+}
+
+TEST(SketchCommands, DuplicateWithAnIdAndNameOfItsOwn) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  bench.history.push(duplicateItem(bench.document, {1}));
+  ASSERT_EQ(bench.document.items().size(), 2u);
+  EXPECT_EQ(bench.document.items()[1].name, "Line 2");
+  EXPECT_NE(bench.document.items()[1].id, FeatureId{1});
+  EXPECT_EQ(bench.document.items()[1].picks, bench.document.items()[0].picks);
+}
+
+/// One random edit of any kind; null when the dice ask for something that is not there.
+class RandomEditor {
+ public:
+  RandomEditor(Bench& bench, unsigned seed) : m_bench(bench), m_random(seed) {}
+  CommandPtr next() {
+    const Document& document = m_bench.document;
+    if (document.items().size() > 12) return removeItems(document, {anyItem(), anyItem(), anyItem()});
+    switch (below(13)) {
+      case 0:
+      case 1: return addItem(randomItem());
+      case 2: return removeItems(document, {anyItem(), anyItem()});
+      case 3:
+      case 4:
+      case 5: return movePick("");
+      case 6: return movePick("nudge");
+      case 7: return renameItem(document, anyItem(), "name " + std::to_string(below(50)));
+      case 8: return below(2) == 0 ? hideItem(document, anyItem(), below(2) == 0) : lockItem(document, anyItem(), below(2) == 0);
+      case 9: return colourItem(document, anyItem(), static_cast<std::uint32_t>(below(1 << 24)));
+      case 10: return below(2) == 0 ? duplicateItem(document, anyItem()) : moveItem(document, anyItem(), below(8));
+      case 11: return snapshotEdit();
+      default: return composite("both", {renameItem(document, anyItem(), "x" + std::to_string(below(9))), addItem(randomItem())});
+    }
+  }
+  std::size_t below(std::size_t n) { return m_random() % n; }
+
+ private:
+  double pixel() { return std::uniform_real_distribution<double>(0, 640)(m_random); }
+  FeatureId anyItem() {
+    const auto& items = m_bench.document.items();
+    return items.empty() ? FeatureId{} : items[below(items.size())].id;
+  }
+  SketchItem randomItem() {
+    SketchItem item;
+    item.id = m_bench.document.nextFeatureId();
+    item.kind = below(2) == 0 ? vision::FeatureKind::kPoint : vision::FeatureKind::kLine;
+    item.name = m_bench.document.freeName(item.kind);
+    for (const auto& snapshot : m_bench.document.snapshots()) {
+      for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+        if (below(5) != 0) item.setPick(snapshot->id, vertex, {{pixel(), pixel() * 0.75}, static_cast<PickState>(below(4))});
+      }
+    }
+    return item;
+  }
+  CommandPtr movePick(const std::string& merge_key) {
+    const SketchItem* item = m_bench.document.item(anyItem());
+    if (item == nullptr || item->picks.empty()) return nullptr;
+    SketchItem after = *item;
+    const SnapshotId id = std::next(after.picks.begin(), static_cast<long>(below(after.picks.size())))->first;
+    after.setPick(id, static_cast<int>(below(static_cast<std::size_t>(vision::vertexCount(after.kind)))),
+                  {{pixel(), pixel()}, static_cast<PickState>(below(4))});
+    return replaceItem(m_bench.document, after, "Move", merge_key);
+  }
+  CommandPtr snapshotEdit() {
+    const Document& document = m_bench.document;
+    const auto& all = document.snapshots();
+    const std::uint64_t id = document.nextSnapshotId().value;
+    if (all.size() < 3) {
+      return addSnapshots(document, {tests::snapshotOf(id, m_bench.scene.left), tests::snapshotOf(id + 1, m_bench.scene.right)});
+    }
+    const SnapshotId one = all[below(all.size())]->id;
+    if (below(3) == 0) return removeSnapshot(document, one);
+    return showSnapshot(document, below(2) == 0 ? PaneSide::kLeft : PaneSide::kRight, one);
+  }
+  Bench& m_bench;
+  std::mt19937_64 m_random;
+};
+
+// The state is compared, by value and by hash, after every single step of undo and of redo.
+void restoresEveryState(unsigned seed, int edits) {
+  Bench bench;
+  RandomEditor editor(bench, seed);
+  std::vector<DocumentState> states{bench.document.state()};   // By history position.
+  int done = 0;
+  while (done < edits) {
+    const std::size_t burst = 1 + editor.below(60);
+    for (std::size_t i = 0; i < burst && done < edits; ++i) {
+      CommandPtr command = editor.next();
+      if (!command) continue;
+      const std::size_t before = bench.history.size();
+      bench.history.push(std::move(command));
+      ++done;
+      const std::size_t position = bench.history.position();
+      if (before == bench.history.limit() && position == before) states.erase(states.begin());
+      states.resize(position);
+      states.push_back(bench.document.state());
+    }
+    for (std::size_t back = editor.below(bench.history.position() + 1); back > 0; --back) {
+      bench.history.undo();
+      const DocumentState& expected = states[bench.history.position()];
+      ASSERT_EQ(bench.document.state(), expected) << "undo, seed " << seed << ", edit " << done;
+      ASSERT_EQ(hashOf(bench.document.state()), hashOf(expected));
+    }
+    for (std::size_t on = editor.below(bench.history.size() - bench.history.position() + 1); on > 0; --on) {
+      bench.history.redo();
+      ASSERT_EQ(bench.document.state(), states[bench.history.position()]) << "redo, seed " << seed << ", edit " << done;
+    }
+  }
+  while (bench.history.canUndo()) bench.history.undo();
+  EXPECT_EQ(bench.document.state(), states[0]);
+}
+
+TEST(EditHistory, RestoresEveryStateBitForBitThroughTenThousandRandomEdits) { restoresEveryState(20260722, 10000); }
+
+TEST(EditHistoryCampaign, RestoresEveryStateBitForBitForManySeeds) {
+  for (unsigned seed = 1; seed <= 10; ++seed) restoresEveryState(seed, 10000);
+}
+
+}  // namespace
+}  // namespace longarm::session
