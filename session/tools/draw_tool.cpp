@@ -161,9 +161,9 @@ ToolReply DrawTool::onPress(const Gesture& gesture) {
     m_filter.cancel();
     return {};
   }
-  if (const auto hit = hitItem(*m_document, m_item, gesture.side, gesture.pixel, gesture.tolerance_px)) {
-    m_grab = hit->handle;
-  }
+  const auto hit = hitItem(*m_document, m_item, gesture.side, gesture.pixel, gesture.tolerance_px);
+  // The body of a copy that is not placed yet is no hindrance to a stroke across it.
+  if (hit && (hit->handle.valid() || !nextUnplaced(gesture.side))) m_grab = hit->handle;
   m_state = State::kGrabbed;
   return consumed(false);
 }

@@ -22,7 +22,7 @@ namespace longarm::session {
 /// | kGrabbed   | click on a placed handle            | kPlacing   | makes it active                                |
 /// | kGrabbed   | click elsewhere                     | kPlacing   | command: the next vertex is placed there       |
 /// | kGrabbed   | drag begins on a handle             | kDragging  | that handle follows                            |
-/// | kGrabbed   | drag begins on the body             | kDragging  | all handles of that picture follow             |
+/// | kGrabbed   | drag begins on the body, all placed | kDragging  | all handles of that picture follow             |
 /// | kGrabbed   | drag begins elsewhere               | kDragging  | a stroke: one end there, the other follows     |
 /// | kGrabbed   | drag begins elsewhere, all placed   | kPlacing   | nothing                                        |
 /// | kDragging  | drag                                | kDragging  | preview                                        |

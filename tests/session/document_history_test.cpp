@@ -186,7 +186,7 @@ class RandomEditor {
       case 9: return colourItem(document, anyItem(), static_cast<std::uint32_t>(below(1 << 24)));
       case 10: return below(2) == 0 ? duplicateItem(document, anyItem()) : moveItem(document, anyItem(), below(8));
       case 11: return snapshotEdit();
-      default: return composite("both", {renameItem(document, anyItem(), "x" + std::to_string(below(9))), addItem(randomItem())});
+      default: return both();
     }
   }
   std::size_t below(std::size_t n) { return m_random() % n; }
@@ -208,6 +208,12 @@ class RandomEditor {
       }
     }
     return item;
+  }
+  CommandPtr both() {
+    std::vector<CommandPtr> commands;
+    commands.push_back(renameItem(m_bench.document, anyItem(), "x" + std::to_string(below(9))));
+    commands.push_back(addItem(randomItem()));
+    return composite("both", std::move(commands));
   }
   CommandPtr movePick(const std::string& merge_key) {
     const SketchItem* item = m_bench.document.item(anyItem());

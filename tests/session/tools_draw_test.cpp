@@ -365,13 +365,14 @@ TEST(LineTool, SaysWhatToDoInEveryState) {
   EXPECT_NE(bench.tools.hint().find("Slides along the epipolar curve"), std::string::npos);
 }
 
-TEST(LineTool, AsksForAnotherPictureWhenBothPanesShowOne) {
+TEST(PointTool, AsksForASecondPictureWhenThereIsOnlyOne) {
   Bench bench(false);
   bench.history.push(addSnapshots(bench.document, {tests::snapshotOf(1, bench.scene.left)}));
 
   bench.tools.setTool(ToolKind::kPoint);
   Hand hand(bench.tools);
-  hand.click(PaneSide::kRight, {200, 200});
+  EXPECT_FALSE(hand.click(PaneSide::kRight, {200, 200})) << "an empty pane is not the tool's";
+  hand.click(PaneSide::kLeft, {200, 200});
   EXPECT_EQ(bench.tools.tool(), ToolKind::kPoint);
   EXPECT_NE(bench.tools.hint().find("second picture"), std::string::npos) << bench.tools.hint();
 }
@@ -412,7 +413,7 @@ TEST(DrawTool, FollowsItsTable) {
       {"press", nothing, [](DrawTool& t) { return t.onPointer(at(PointerPhase::kPress, 100, 100)); }, State::kGrabbed, false, false},
       {"click", press, release, State::kPlacing, true, false},
       {"drag on a handle", press_handle, drag, State::kDragging, false, false},
-      {"drag on the body", press_body, drag, State::kDragging, false, false},
+      {"drag on the unplaced body", press_body, drag, State::kDragging, false, false},
       {"stroke", press, drag, State::kDragging, false, false},
       {"drag on", dragging, drag, State::kDragging, false, false},
       {"drag ends", dragging, release, State::kPlacing, true, false},

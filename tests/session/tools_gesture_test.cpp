@@ -51,7 +51,9 @@ TEST(GestureFilter, FollowsItsTable) {
     for (const auto& e : rows[i].before) filter.feed(e);
     const auto gesture = filter.feed(rows[i].event);
     EXPECT_EQ(gesture.has_value(), rows[i].gives.has_value()) << "row " << i;
-    if (gesture && rows[i].gives) EXPECT_EQ(gesture->kind, *rows[i].gives) << "row " << i;
+    if (gesture && rows[i].gives) {
+      EXPECT_EQ(gesture->kind, *rows[i].gives) << "row " << i;
+    }
     EXPECT_EQ(filter.state(), rows[i].next) << "row " << i;
   }
 }

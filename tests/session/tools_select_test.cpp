@@ -296,7 +296,9 @@ TEST_P(ToolContract, HoldsUnderAnyHand) {
       const bool escape = below(1) < 0.3;
       if (escape) hand.key(SketchKey::kEscape);
       hand.release();
-      if (escape) EXPECT_EQ(bench.document.state(), before);
+      if (escape) {
+        EXPECT_EQ(bench.document.state(), before);
+      }
       EXPECT_LE(bench.history.position(), steps + 1);
       EXPECT_FALSE(bench.tools.busy());
       EXPECT_FALSE(bench.tools.hint().empty());
