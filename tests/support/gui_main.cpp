@@ -49,6 +49,7 @@ void announceQtWarning() { ++g_announced; }
 int main(int argc, char** argv) {
   longarm::setRequireHandler([](const std::string& what) { throw std::logic_error(what); });
   testing::InitGoogleTest(&argc, argv);
+  if (testing::GTEST_FLAG(list_tests)) return RUN_ALL_TESTS();  // ctest asks for names without a display
   QSurfaceFormat format;                       // what QVTKOpenGLNativeWidget::defaultFormat() asks for
   format.setRenderableType(QSurfaceFormat::OpenGL);
   format.setVersion(3, 2);
