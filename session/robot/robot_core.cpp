@@ -1,7 +1,11 @@
 #include "session/robot/robot_core.h"
 
+#include <chrono>
+#include <thread>
+
 #include "core/log.h"
 #include "core/text.h"
+#include "session/robot/rosbridge_devices.h"
 
 namespace longarm::session {
 namespace {
@@ -27,6 +31,8 @@ MotionLoopOptions loopOptions(const RuntimeOptions& options) {
   return {options.start_tolerance, options.gate.max_state_age_s, options.gui_watchdog,
           options.gui_stop_jog_s,  options.gui_stop_motion_s,    options.player};
 }
+
+bool onThisMachine(const std::string& url) { return url.rfind("ws://127.0.0.1:", 0) == 0; }
 
 hardware::GateChecks gateChecks(const planning::Workcell& workcell) {
   hardware::GateChecks checks;
@@ -76,7 +82,7 @@ Status RobotCore::startProcess() {
   if (!process) return process.error();
   m_process = std::move(*process);
   m_url = m_process->url();
-  if (m_url.rfind("ws://127.0.0.1:", 0) != 0) {
+  if (!onThisMachine(m_url)) {
     return {ErrorCode::kRefused, "the virtual robot answers at " + m_url + ", which is not this machine"};
   }
   return {};
@@ -85,13 +91,16 @@ Status RobotCore::startProcess() {
 Status RobotCore::connect() {
   m_url = m_workcell.backend.url;
   const bool own_devices = static_cast<bool>(m_options.make_devices);
-  if (m_options.mode == RobotMode::kVirtual && !own_devices) {
+  const bool is_virtual = m_options.mode == RobotMode::kVirtual && !own_devices;
+  if (is_virtual) {
     if (auto status = startProcess(); !status) return status;
   }
   if (m_options.through) m_url = m_options.through(m_url);
-  if (!own_devices)
-    return {ErrorCode::kInvalidInput, "driver \"" + m_workcell.backend.driver + "\" is not known"};
-  auto devices = m_options.make_devices(m_workcell, m_url, m_clock);
+  if (is_virtual && !onThisMachine(m_url)) {
+    return {ErrorCode::kRefused, "the virtual robot answers at " + m_url + ", which is not this machine"};
+  }
+  auto devices = own_devices ? m_options.make_devices(m_workcell, m_url, m_clock)
+                             : makeRosbridgeDevices(m_workcell, m_url, m_clock);
   if (!devices) return devices.error();
   m_devices = std::move(*devices);
   makeMotion();
@@ -99,7 +108,20 @@ Status RobotCore::connect() {
     if (auto status = device->open(); !status)
       logLine(LogLevel::kWarning, "session.robot", status.error().message);
   }
+  if (m_options.lockstep) waitUntilOpen();
   return {};
+}
+
+// In lockstep the first cycle finds the devices as it always does, however long the connection takes.
+void RobotCore::waitUntilOpen() const {
+  constexpr double kPatience_s = 5;
+  const SteadyClock steady;
+  for (const double end = steady.now_s() + kPatience_s; steady.now_s() < end;) {
+    bool opening = false;
+    for (const auto* device : allDevices()) opening |= device->state() == hardware::DeviceState::kOpening;
+    if (!opening) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 void RobotCore::makeMotion() {
@@ -134,8 +156,12 @@ void RobotCore::tick() {
 }
 
 // Devices that need no permission to work become active when their connection stands; the arm waits for
-// resetStop().
+// resetStop().  An arm that has lost its link or is in fault stays stopped until then, whether it moved or not.
 void RobotCore::upkeep() {
+  if (!m_gate->stopped() && m_devices.arm->state() != hardware::DeviceState::kActive) {
+    const auto why = m_devices.arm->message();
+    m_gate->stop("link", why.empty() ? "the arm is not active any more; release STOP to go on" : why);
+  }
   const auto activate = [](hardware::Device& device) {
     if (device.state() == hardware::DeviceState::kIdle && !device.activate()) return;
   };
@@ -176,6 +202,10 @@ Status RobotCore::resetStop() {
   auto& arm = *m_devices.arm;
   if (arm.state() == hardware::DeviceState::kFault) {
     if (auto status = arm.clearFault(); !status) return status;
+  }
+  for (auto* device : allDevices()) {    // what still fails keeps its fault and says so
+    if (device->state() != hardware::DeviceState::kFault) continue;
+    if (const auto status = device->clearFault(); !status) m_report("fault", device->name(), status.error().message);
   }
   return m_gate->reset();
 }

@@ -54,6 +54,7 @@ class RobotCore {
             MotionLoop::Report report);
   Status connect();
   Status startProcess();
+  void waitUntilOpen() const;
   void makeMotion();
   std::vector<hardware::Device*> allDevices() const;
   void upkeep();

@@ -1,0 +1,44 @@
+#pragma once
+
+/// @file
+/// RosbridgeCamera: compressed pictures, subscribed to while it is active.
+
+#include <atomic>
+#include <mutex>
+
+#include "hardware/drivers/rosbridge/linked_device.h"
+#include "hardware/drivers/rosbridge/topic_names.h"
+
+namespace longarm::hardware {
+
+struct CameraSettings {
+  double max_rate_hz = 20;               ///< The robot sends no more than so many a second.
+  bool zooms = false;
+};
+
+/// The last picture stays visible after deactivate().  Thread-safe.
+class RosbridgeCamera final : public LinkedDevice<Camera> {
+ public:
+  RosbridgeCamera(std::string name, RosbridgeRobot robot, CameraSettings settings, const TopicNames& topics);
+  ~RosbridgeCamera() override;
+
+  std::shared_ptr<const Frame> latestFrame() const override { return m_frame.get(); }
+  /// @returns kDisconnected, kRefused for a camera without zoom or that is closed, kOutOfLimits.
+  Status setZoom(double zoom01) override;
+
+ protected:
+  Status onActivate() override;
+  Status onStop() override;
+
+ private:
+  Status take(const rosbridge::Publish& message, double received_s);
+
+  const CameraSettings m_settings;
+  const std::string m_image_topic, m_zoom_topic;
+  LatestValue<Frame> m_frame;
+  std::mutex m_mutex;                    // guards m_subscription
+  std::uint64_t m_subscription = 0;      // 0: none
+  std::uint64_t m_count = 0;             // of pictures; connection's thread only
+};
+
+}  // namespace longarm::hardware
