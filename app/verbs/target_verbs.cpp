@@ -92,6 +92,7 @@ Result<Answer> runEpipolar(const EpipolarVerbOptions& options) {
   for (const auto& p : curve->points) {
     json["curve_px"].push_back({p.pixel.x(), p.pixel.y()});
     json["depths"].push_back(p.depth);
+    if (p.begins_piece) json["breaks"].push_back(rows.size() - 1);
     rows.push_back({formatFixed(p.pixel.x(), 2), formatFixed(p.pixel.y(), 2), formatFixed(p.depth, 3)});
   }
   if (curve->points.empty()) {

@@ -34,7 +34,7 @@ Eigen::Vector2d tangentNear(const vision::EpipolarCurve& curve, const Eigen::Vec
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < curve.points.size(); ++i) {
     const Eigen::Vector2d a = curve.points[i - 1].pixel, ab = curve.points[i].pixel - a;
-    if (ab.squaredNorm() == 0) continue;
+    if (ab.squaredNorm() == 0 || curve.points[i].begins_piece) continue;
     const double s = std::clamp((pixel - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
     const double distance = (a + s * ab - pixel).squaredNorm();
     if (distance < nearest) {

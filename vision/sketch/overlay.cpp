@@ -32,10 +32,11 @@ std::vector<std::vector<std::size_t>> edgesOf(FeatureKind kind) {
 }  // namespace
 
 void addEpipolarCurve(const EpipolarCurve& curve, Overlay* overlay) {
-  if (curve.points.size() >= 2) {
-    OverlayShape line{Kind::kPolyline, OverlayRole::kEpipolar, {}, {}};
-    for (const auto& point : curve.points) line.points.push_back(point.pixel);
-    overlay->shapes.push_back(std::move(line));
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    if (i == 0 || curve.points[i].begins_piece) {
+      overlay->shapes.push_back({Kind::kPolyline, OverlayRole::kEpipolar, {}, {}});
+    }
+    overlay->shapes.back().points.push_back(curve.points[i].pixel);
   }
   for (const auto& tick : curve.ticks) {
     overlay->shapes.push_back({Kind::kMarker, OverlayRole::kDepthTick, {tick.pixel}, {}});

@@ -53,26 +53,19 @@ class Ray {
   double m_max_radius2 = 0;
 };
 
+// Probes first ... last see the curve; their neighbours do not.
 struct Run {
   int first = -1, last = -1;
-  double length_px = -1;
 };
 
-// The longest visible stretch among the probes.
-Run longestRun(const std::array<Vector2d, kProbes>& pixels, const std::array<bool, kProbes>& seen) {
-  Run best, run;
+std::vector<Run> visibleRuns(const std::array<bool, kProbes>& seen) {
+  std::vector<Run> runs;
   for (int i = 0; i < kProbes; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (!seen[k]) {
-      run = {};
-      continue;
-    }
-    if (run.first < 0) run = {i, i, 0};
-    if (run.last != i) run.length_px += (pixels[k] - pixels[k - 1]).norm();
-    run.last = i;
-    if (run.length_px > best.length_px) best = run;
+    if (!seen[static_cast<std::size_t>(i)]) continue;
+    if (runs.empty() || runs.back().last != i - 1) runs.push_back({i, i});
+    runs.back().last = i;
   }
-  return best;
+  return runs;
 }
 
 // Moves from a seen inverse depth towards a hidden one as far as the pixel can be seen.
@@ -104,12 +97,46 @@ void subdivide(const Ray& ray, const Node& a, const Node& b, double tolerance, i
   }
 }
 
+// A first look along the ray, at inverse depths uniform from near to far.
+struct Probes {
+  Probes(const Ray& ray, double near_inverse, double far_inverse) : near_w(near_inverse), far_w(far_inverse) {
+    for (int i = 0; i < kProbes; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      seen[k] = ray.sees(at(i), &pixels[k]);
+    }
+  }
+  double at(int i) const { return near_w + (far_w - near_w) * i / (kProbes - 1); }
+
+  double near_w, far_w;
+  std::array<Vector2d, kProbes> pixels;
+  std::array<bool, kProbes> seen{};
+};
+
+// One visible piece, from the last point in sight at its near end to the last one at its far end.
+std::vector<Node> nodesOf(const Ray& ray, const Probes& probes, const Run& run, double max_sag_px) {
+  const double w0 = run.first == 0 ? probes.near_w : edgeOfSight(ray, probes.at(run.first), probes.at(run.first - 1));
+  const double w1 =
+      run.last == kProbes - 1 ? probes.far_w : edgeOfSight(ray, probes.at(run.last), probes.at(run.last + 1));
+  std::vector<Node> corners{{w0, Vector2d::Zero()}};
+  const double kept = 1e-12 * probes.near_w;
+  for (int i = run.first; i <= run.last; i += 8) {
+    const double w = probes.at(i);
+    if (w < w0 - kept && w > w1 + kept) corners.push_back({w, probes.pixels[static_cast<std::size_t>(i)]});
+  }
+  corners.push_back({w1, Vector2d::Zero()});
+  ray.sees(w0, &corners.front().pixel);
+  ray.sees(w1, &corners.back().pixel);
+  std::vector<Node> nodes{corners.front()};
+  for (std::size_t i = 1; i < corners.size(); ++i) subdivide(ray, corners[i - 1], corners[i], max_sag_px, 0, &nodes);
+  return nodes;
+}
+
 std::vector<EpipolarPoint> ticksBetween(const Ray& ray, double near_m, double far_m) {
   std::vector<EpipolarPoint> ticks;
   for (int decade = -3; decade <= 4; ++decade) {
     for (const double digit : {1.0, 2.0, 5.0}) {
       const double depth = digit * std::pow(10.0, decade);
-      EpipolarPoint tick{{}, depth};
+      EpipolarPoint tick{{}, depth, false};
       if (depth >= near_m && depth <= far_m && ray.sees(1 / depth, &tick.pixel)) ticks.push_back(tick);
     }
   }
@@ -142,12 +169,13 @@ std::optional<EpipolarPoint> EpipolarCurve::nearest(const Vector2d& pixel) const
     const EpipolarPoint& b = points[i];
     const Vector2d chord = b.pixel - a.pixel;
     const double length2 = chord.squaredNorm();
-    const double s = length2 > 0 ? std::clamp((pixel - a.pixel).dot(chord) / length2, 0.0, 1.0) : 0;
+    const double along = length2 > 0 ? std::clamp((pixel - a.pixel).dot(chord) / length2, 0.0, 1.0) : 0;
+    const double s = b.begins_piece ? 1 : along;
     const Vector2d foot = a.pixel + s * chord;
     const double distance2 = (pixel - foot).squaredNorm();
     if (distance2 >= best_distance2) continue;
     best_distance2 = distance2;
-    best = {foot, 1 / ((1 - s) / a.depth + s / b.depth)};
+    best = {foot, 1 / ((1 - s) / a.depth + s / b.depth), false};
   }
   return best;
 }
@@ -178,35 +206,18 @@ Result<EpipolarCurve> epipolarCurve(const View& from, const Vector2d& pixel, con
   const auto start = from.camera.normalisedOfPixel(pixel);
   if (!start) return Error{ErrorCode::kInvalidInput, "view \"" + from.name + "\": " + start.error().message};
   const Ray ray(from, *start, to);
-  const double near_w = 1 / options.min_depth, far_w = 1 / options.max_depth;
-  const auto probe = [&](int i) { return near_w + (far_w - near_w) * i / (kProbes - 1); };
-  std::array<Vector2d, kProbes> pixels;
-  std::array<bool, kProbes> seen{};
-  for (int i = 0; i < kProbes; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    seen[k] = ray.sees(probe(i), &pixels[k]);
-  }
-  const Run run = longestRun(pixels, seen);
+  const Probes probes(ray, 1 / options.min_depth, 1 / options.max_depth);
   EpipolarCurve curve;
-  if (run.first < 0) return curve;
-  const double w0 = run.first == 0 ? near_w : edgeOfSight(ray, probe(run.first), probe(run.first - 1));
-  const double w1 = run.last == kProbes - 1 ? far_w : edgeOfSight(ray, probe(run.last), probe(run.last + 1));
-
-  std::vector<Node> corners{{w0, Vector2d::Zero()}};
-  const double kept = 1e-12 * near_w;
-  for (int i = run.first; i <= run.last; i += 8) {
-    if (probe(i) < w0 - kept && probe(i) > w1 + kept) corners.push_back({probe(i), pixels[static_cast<std::size_t>(i)]});
+  for (const Run& run : visibleRuns(probes.seen)) {
+    bool begins = !curve.points.empty();
+    for (const Node& node : nodesOf(ray, probes, run, options.max_sag_px)) {
+      curve.points.push_back({node.pixel, 1 / node.w, begins});
+      begins = false;
+    }
   }
-  corners.push_back({w1, Vector2d::Zero()});
-  ray.sees(w0, &corners.front().pixel);
-  ray.sees(w1, &corners.back().pixel);
-  std::vector<Node> nodes{corners.front()};
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    subdivide(ray, corners[i - 1], corners[i], options.max_sag_px, 0, &nodes);
+  if (!curve.points.empty()) {
+    curve.ticks = ticksBetween(ray, curve.points.front().depth, curve.points.back().depth);
   }
-  curve.points.reserve(nodes.size());
-  for (const auto& node : nodes) curve.points.push_back({node.pixel, 1 / node.w});
-  curve.ticks = ticksBetween(ray, curve.points.front().depth, curve.points.back().depth);
   return curve;
 }
 

@@ -21,14 +21,16 @@ struct EpipolarOptions {
 struct EpipolarPoint {
   Eigen::Vector2d pixel;     ///< In the second view, raw.
   double depth = 0;          ///< z in the first camera [m].
+  bool begins_piece = false; ///< The curve is hidden between the point before and this one.
 };
 
-/// The visible piece of the curve, from near to far; it lies in the second picture and before both cameras.
+/// What can be seen of the curve, from near to far: in the second picture and before both cameras.  Nearly
+/// always one piece; a lens may bend the curve out of the picture's edge and back, which makes two.
 struct EpipolarCurve {
   std::vector<EpipolarPoint> points;        ///< Empty if no part can be seen.
-  std::vector<EpipolarPoint> ticks;         ///< Round depths for labels, inside the visible piece.
+  std::vector<EpipolarPoint> ticks;         ///< Round depths for labels, where they can be seen.
 
-  /// The curve's point nearest to a pixel (depth interpolated in inverse depth), or nothing if empty.
+  /// The visible point nearest to a pixel (depth interpolated in inverse depth), or nothing if empty.
   std::optional<EpipolarPoint> nearest(const Eigen::Vector2d& pixel) const;
 };
 

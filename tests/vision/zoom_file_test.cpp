@@ -1,0 +1,94 @@
+// The zoom camera file of SAND2004-6198, Appendix D: its own table as the example.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/vision/temporary_file.h"
+#include "vision/camera/camera_file.h"
+
+namespace longarm::tests {
+namespace {
+
+// The report's table, loose blanks and trailing points as printed.
+constexpr const char* kReport = R"(<?xml version="1.0"?><SR_world><SR_filename> zoom_cam.xml </SR_filename>
+<SR_comment>Sony Zoom Camera</SR_comment>
+<SR_cam> zcam <SR_zoom> 0.0 <SR_cam_int>{740.09 741.60 -4.58 344.25 212.84 0. 0. 0. 0.} </SR_cam_int> <SR_cam_ext> {-0.004 0.041 0.006 0.009 -0.004 0.034 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.025 <SR_cam_int> {794.40 800.52 -6.28 327.35 251.45 0.0 0. 0. 0.} </SR_cam_int> <SR_cam_ext> {-0.004 0.040 0.009 0.056 0.016 0.032 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.05 <SR_cam_int> {844.86 849.04 -7.24 316.87 219.260 0. 0. 0. 0. } </SR_cam_int> <SR_cam_ext> {-0.002 0.041 -0.000 0.022 0.022 0.032 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.1 <SR_cam_int> {1004.12 1005.49 -5.17 329.62 227.659 0. 0. 0. 0.} </SR_cam_int> <SR_cam_ext> {-0.002 0.041 0.008 0.034 0.004 0.033 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.15 <SR_cam_int> {1208.51 1207.932 -5.85 358.46 249.57 0. 0. 0. 0.} </SR_cam_int> <SR_cam_ext> {-0.002 0.041 0.014 0.052 -0.020 0.033 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.3 <SR_cam_int> {2314.0 2319.32 -15.74 321.77 139.95 0. 0. 0. 0.} </SR_cam_int> <SR_cam_ext> {-0.002 0.042 0.019 0.001 0.003 0.034 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 0.4 <SR_cam_int> {3500.0 3500.0 0.0 320.0 240.0 0.0 0.0 0.0 0.0} </SR_cam_int> <SR_cam_ext> {-0.001 0.041 0.021 0.078 0.051 0.032 } </SR_cam_ext> </SR_zoom>
+<SR_zoom> 1.0 <SR_cam_int> {29600.0 29600.0 0.0 320.0 240.0 0.0 0.0 0.0 0.0} </SR_cam_int> <SR_cam_ext> {-0.001 0.041 0.021 0.022 0.022 0.032 } </SR_cam_ext> </SR_zoom></SR_cam></SR_world>
+)";
+
+vision::CameraFile cameraAt(double zoom) {
+  const TemporaryFile path("zoom.xml", kReport);
+  auto file = vision::readCameraFile(path.path(), zoom);
+  EXPECT_TRUE(file.ok()) << file.error().message;
+  return file.ok() ? *file : vision::CameraFile{};
+}
+
+TEST(ZoomFile, NodesAreMetExactly) {
+  const auto wide = cameraAt(0);
+  EXPECT_EQ(wide.camera.fx, 740.09);
+  EXPECT_EQ(wide.camera.fy, 741.60);
+  EXPECT_EQ(wide.camera.skew, -4.58);
+  EXPECT_EQ(wide.camera.cx, 344.25);
+  EXPECT_EQ(wide.camera.cy, 212.84);
+  EXPECT_EQ(cameraAt(0.3).camera.skew, -15.74);
+  EXPECT_EQ(cameraAt(1).camera.fx, 29600);
+  // The file maps mount to camera; a pose says where the camera is in its mount.
+  ASSERT_TRUE(wide.pose.has_value());
+  const Pose X_camera_mount = wide.pose->pose.inverse();
+  EXPECT_LT((X_camera_mount.translation() - Eigen::Vector3d(-0.004, 0.041, 0.006)).norm(), 1e-12);
+  EXPECT_LT((logSO3(X_camera_mount.linear()) - Eigen::Vector3d(0.009, -0.004, 0.034)).norm(), 1e-12);
+}
+
+TEST(ZoomFile, FocalLengthGrowsMonotonely) {
+  double before = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const auto file = cameraAt(i / 200.0);
+    EXPECT_GT(file.camera.fx, before) << "zoom " << i / 200.0;
+    before = file.camera.fx;
+  }
+}
+
+TEST(ZoomFile, TheBoresightStaysSmoothBetweenNodes) {
+  const auto boresight = [](double zoom) {
+    const auto file = cameraAt(zoom);
+    return file.camera.pixelOfNormalised(
+        (file.pose->pose.inverse().linear() * Eigen::Vector3d::UnitZ()).hnormalized());
+  };
+  EXPECT_NEAR(boresight(0).y(), 206.1, 0.1);
+  EXPECT_NEAR(boresight(0.3).x(), 328.8, 0.1);
+  EXPECT_NEAR(boresight(0.3).y(), 137.7, 0.1);
+  const double low = boresight(0.3).y(), high = boresight(0.15).y();
+  for (double zoom = 0.16; zoom < 0.3; zoom += 0.02) {
+    EXPECT_GT(boresight(zoom).y(), low) << zoom;
+    EXPECT_LT(boresight(zoom).y(), high) << zoom;
+  }
+}
+
+TEST(ZoomFile, RefusalsNameSettingAndValue) {
+  const auto refusal = [](const std::string& text, std::optional<double> zoom) {
+    const TemporaryFile path("zoom.xml", text);
+    const auto file = vision::readCameraFile(path.path(), zoom);
+    return file.ok() ? std::string("taken") : file.error().message;
+  };
+  const auto edited = [](const std::string& from, const std::string& to) {
+    std::string text = kReport;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_NE(refusal(kReport, {}).find("zoom"), std::string::npos) << "without a setting";
+  EXPECT_NE(refusal(kReport, 1.5).find("1.5 is outside"), std::string::npos);
+  EXPECT_NE(refusal(kReport, std::nan("")).find("zoom"), std::string::npos);
+  EXPECT_NE(refusal(edited("0.025", "0.05"), 0.1).find("0.05"), std::string::npos) << "twice";
+  EXPECT_NE(refusal(edited("740.09", "-740"), 0.1).find("-740"), std::string::npos);
+  EXPECT_NE(refusal(edited("740.09", "abc"), 0.1).find("abc"), std::string::npos);
+  EXPECT_NE(refusal(edited("740.09 ", ""), 0.1).find("SR_cam_int"), std::string::npos);
+  EXPECT_NE(refusal(edited("{-0.004 0.041", "{nan 0.041"), 0.1).find("SR_cam_ext"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace longarm::tests
