@@ -170,10 +170,9 @@ void CollisionWorld::setPadding(double padding, double self_padding) {
   m_impl->options.self_padding = self_padding;
 }
 
-void CollisionWorld::allow(const std::string& object, const std::vector<std::string>& links) {
+void CollisionWorld::allow(const std::string& object, const std::vector<std::string>& others) {
   const auto matches = [&](const Body& first, const Body& second) {
-    return first.object && first.name == object && !second.object &&
-           std::find(links.begin(), links.end(), second.name) != links.end();
+    return first.object && first.name == object && std::find(others.begin(), others.end(), second.name) != others.end();
   };
   for (auto& pair : m_impl->pairs) {
     const Body& a = m_impl->bodies[static_cast<std::size_t>(pair.a)];

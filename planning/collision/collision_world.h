@@ -54,8 +54,8 @@ class CollisionWorld {
   CollisionWorld& operator=(const CollisionWorld&) = delete;
 
   const RobotModel& model() const;
-  /// Lets these links touch the object of that name.
-  void allow(const std::string& object, const std::vector<std::string>& links);
+  /// Lets these links and objects touch the object of that name.
+  void allow(const std::string& object, const std::vector<std::string>& others);
   /// Changes the paddings, e.g. when a motion must start closer than the usual.
   void setPadding(double padding, double self_padding);
   double padding() const;

@@ -1,0 +1,57 @@
+#pragma once
+
+/// @file
+/// TrueWorld: where the scenario's objects really are.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+#include "planning/world/scenario.h"
+
+namespace longarm::virtual_robot {
+
+/// Objects in the world frame (base_link where the robot started), one of them perhaps held by the gripper, others
+/// falling.  Thread-compatible.
+class TrueWorld {
+ public:
+  explicit TrueWorld(const planning::Scenario& scenario);
+
+  const std::vector<planning::ScenarioObject>& objects() const { return m_objects; }
+  /// Where an object was at the start.  @pre index < objects().size()
+  const Pose& startPose(std::size_t index) const { return m_start[index]; }
+  std::optional<std::size_t> indexOf(const std::string& name) const;
+
+  /// Moves an object, e.g. when a finger pushes it.
+  void place(std::size_t index, const Pose& X_WO);
+  /// The gripper has closed on it; `X_TO` is its pose in the tool frame.
+  void hold(std::size_t index, const Pose& X_TO);
+  /// Moves the held object to where the tool is.
+  void carry(const Pose& X_WT);
+  /// Lets go: the held object falls straight down until it meets something.
+  void release();
+  /// One tick of falling.
+  void step(double seconds);
+
+  std::optional<std::size_t> held() const { return m_held; }
+  const Pose& heldInTool() const { return m_X_TO; }
+  std::string heldName() const;
+  /// Changes whenever an object that is not held has moved, or one is taken or let go.
+  long revision() const { return m_revision; }
+
+ private:
+  struct Fall {
+    std::size_t index;
+    double way, done, speed;
+  };
+
+  std::vector<planning::ScenarioObject> m_objects;
+  std::vector<Pose> m_start;
+  std::optional<std::size_t> m_held;
+  Pose m_X_TO = Pose::Identity();
+  std::vector<Fall> m_falls;
+  long m_revision = 0;
+};
+
+}  // namespace longarm::virtual_robot
