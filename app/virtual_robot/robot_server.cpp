@@ -42,7 +42,11 @@ RobotServer::RobotServer(QObject* parent)
   });
 }
 
-RobotServer::~RobotServer() { m_robot.reset(); }
+RobotServer::~RobotServer() {
+  if (m_client != nullptr) m_client->disconnect(this);
+  m_listener.close();
+  m_robot.reset();
+}
 
 Status RobotServer::start(const RobotOptions& options, quint16 port) {
   RobotOutlets outlets;
