@@ -86,7 +86,7 @@ Result<std::string> readTextFile(const std::string& path, std::size_t max_bytes)
   std::error_code ec;
   const auto status = std::filesystem::status(path, ec);
   if (ec || !std::filesystem::exists(status)) {
-    return Error{ErrorCode::kNotFound, path + ": no such file"};
+    return Error{ErrorCode::kNotFound, path + ": there is no such file"};
   }
   if (!std::filesystem::is_regular_file(status)) {
     return Error{ErrorCode::kInvalidInput, path + ": is not a regular file"};

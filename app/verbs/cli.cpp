@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "core/printable.h"
 #include "core/text.h"
 
 namespace longarm::app {
@@ -65,7 +66,7 @@ int Cli::print(const Result<Answer>& answer) const {
     exit = answer->exit;
   } else {
     exit = exitOf(answer.error());
-    std::fprintf(stderr, "longarm: %s\n", answer.error().message.c_str());
+    std::fprintf(stderr, "longarm: %s\n", printable(answer.error().message).c_str());
     if (exit == kExitBadInput) return exit;  // nothing was computed: no JSON
     json = {{"status", toString(answer.error().code)}, {"reason", answer.error().message}};
   }

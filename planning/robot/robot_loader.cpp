@@ -9,6 +9,7 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "core/printable.h"
 #include "core/text.h"
 #include "planning/robot/robot_model.h"
 #include "planning/robot/srdf_file.h"
@@ -94,6 +95,7 @@ class RobotLoader {
     if (const Status status = resolveMimics(); !status) return status.error();
     orderDepthFirst();
     if (const Status status = readSrdf(); !status) return status.error();
+    for (auto& warning : m_model->m_warnings) warning = printable(warning);
     return std::shared_ptr<const RobotModel>(std::move(m_model));
   }
 
@@ -333,7 +335,7 @@ Result<std::shared_ptr<const RobotModel>> RobotModel::load(const std::string& ur
                                                            const std::string& srdf_path,
                                                            const LoadOptions& options) {
   try {
-    return RobotLoader(urdf_path, srdf_path, options).run();
+    return printable(RobotLoader(urdf_path, srdf_path, options).run());
   } catch (const std::exception& e) {
     return Error{ErrorCode::kInternal, urdf_path + ": reading failed: " + e.what()};
   }

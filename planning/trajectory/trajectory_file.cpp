@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/printable.h"
 #include "core/text.h"
 
 namespace longarm::planning {
@@ -113,10 +114,10 @@ Result<Trajectory> readTrajectory(const std::string& path) {
       return true;
     });
     auto trajectory = trajectoryFromJson(value);
-    if (!trajectory) return Error{trajectory.error().code, path + ": " + trajectory.error().message};
+    if (!trajectory) return printable(Error{trajectory.error().code, path + ": " + trajectory.error().message});
     return trajectory;
   } catch (const std::exception& e) {
-    return Error{ErrorCode::kInvalidInput, path + ": not JSON: " + e.what()};
+    return printable(Error{ErrorCode::kInvalidInput, path + ": not JSON: " + e.what()});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "core/printable.h"
 #include "core/text.h"
 
 namespace longarm::planning {
@@ -46,7 +47,7 @@ Result<std::shared_ptr<const TriangleMesh>> loadMesh(const std::string& path, co
   const auto content = readTextFile(path, limits.max_bytes);
   if (!content) return content.error();
   auto mesh = parse(*content, path, limits);
-  if (!mesh) return mesh.error();
+  if (!mesh) return printable(mesh.error());
   mesh->source = path;
   applyScale(scale, *mesh);
   if (const Status status = internal::validateMesh(*mesh, path); !status) return status.error();
@@ -70,7 +71,7 @@ Status internal::validateMesh(const TriangleMesh& mesh, const std::string& name)
                                             std::to_string(count)};
     }
   }
-  if (mesh.triangles.empty()) return {ErrorCode::kInvalidInput, name + ": no triangles"};
+  if (mesh.triangles.empty()) return {ErrorCode::kInvalidInput, name + ": holds no triangles; expected at least one"};
   return {};
 }
 

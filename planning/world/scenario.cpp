@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/printable.h"
 #include "core/resource_path.h"
 #include "core/text.h"
 #include "planning/world/json_reader.h"
@@ -222,7 +223,7 @@ std::string namesOfBuiltIns() {
 Result<Scenario> loadFile(const std::string& path) {
   const Result<std::string> text = readTextFile(path, 1u << 20);
   if (!text) return text.error();
-  return parseScenario(*text, path);
+  return printable(parseScenario(*text, path));
 }
 
 }  // namespace

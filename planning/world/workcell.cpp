@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/printable.h"
 #include "core/resource_path.h"
 #include "core/text.h"
 #include "planning/world/mesh_file.h"
@@ -324,7 +325,11 @@ const CameraSpec* Workcell::camera(const std::string& wanted) const {
 
 Result<Workcell> loadWorkcell(const std::string& path) {
   try {
-    return WorkcellReader(path).run();
+    auto workcell = printable(WorkcellReader(path).run());
+    if (workcell) {
+      for (auto& warning : workcell->warnings) warning = printable(warning);
+    }
+    return workcell;
   } catch (const std::exception& e) {
     return Error{ErrorCode::kInternal, path + ": reading failed: " + e.what()};
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/printable.h"
 #include "core/text.h"
 
 namespace longarm::planning::internal {
@@ -50,14 +51,14 @@ void YamlFindings::refuse(const YAML::Node& node, const std::string& what) {
   if (error) return;
   const int line = node.IsDefined() ? node.Mark().line : -1;
   error = Error{ErrorCode::kInvalidInput,
-                file + (line >= 0 ? ":" + std::to_string(line + 1) : std::string()) + ": " + what.substr(0, 600)};
+                printable(file + (line >= 0 ? ":" + std::to_string(line + 1) : std::string()) + ": " + what.substr(0, 600))};
 }
 
 void YamlFindings::warn(const YAML::Node& node, const std::string& what) {
   const int line = node.IsDefined() ? node.Mark().line : -1;
   if (warnings.size() < 100) {
-    warnings.push_back(file + (line >= 0 ? ":" + std::to_string(line + 1) : std::string()) + ": " +
-                       what.substr(0, 600));
+    warnings.push_back(printable(file + (line >= 0 ? ":" + std::to_string(line + 1) : std::string()) + ": " +
+                                 what.substr(0, 600)));
   }
 }
 
@@ -274,9 +275,10 @@ Result<YAML::Node> readYamlMap(const std::string& path) {
   try {
     const YAML::Node node = YAML::Load(*text);
     if (node.IsMap()) return node;
-    return Error{ErrorCode::kInvalidInput, path + ":1: the file is " + shown(node) + "; expected a map"};
+    return printable(Error{ErrorCode::kInvalidInput, path + ":1: the file is " + shown(node) + "; expected a map"});
   } catch (const YAML::Exception& e) {
-    return Error{ErrorCode::kInvalidInput, path + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + e.msg};
+    return printable(
+        Error{ErrorCode::kInvalidInput, path + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + e.msg});
   }
 }
 

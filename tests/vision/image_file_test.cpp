@@ -61,6 +61,18 @@ TEST(ImageFile, ABombIsRefusedByItsHeaderAlone) {
   EXPECT_EQ(imageSizeFromHeader(bomb).error().code, ErrorCode::kInvalidInput);
 }
 
+TEST(ImageFile, APngWithOneWrongBitIsRefusedNotShownInPart) {
+  const std::string whole = encoded(".png");
+  for (std::size_t at = 8; at < whole.size() - 12; at += 7) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    EXPECT_FALSE(decodeImage(damaged).ok()) << "byte " << at;
+  }
+  const auto cut = decodeImage(std::string_view(whole).substr(0, whole.size() - 20));
+  ASSERT_FALSE(cut.ok());
+  EXPECT_NE(cut.error().message.find("byte"), std::string::npos) << cut.error().message;
+}
+
 TEST(ImageFile, LimitsCanBeSet) {
   vision::ImageLimits limits;
   limits.max_side_px = 36;
@@ -73,7 +85,7 @@ TEST(ImageFile, LimitsCanBeSet) {
 TEST(ImageFile, ShortenedPicturesAreRefusedOrWhole) {
   for (const char* ending : {".png", ".jpg", ".bmp", ".ppm", ".tiff"}) {
     const std::string whole = encoded(ending);
-    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 97) {
+    for (std::size_t length = 0; length < whole.size(); length += 1 + length / 40) {
       const auto image = decodeImage(std::string_view(whole).substr(0, length));
       if (image.ok()) {
         EXPECT_EQ(image->size(), cv::Size(37, 21)) << ending;

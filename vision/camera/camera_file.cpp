@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/printable.h"
 #include "core/text.h"
 #include "vision/camera/bounded_yaml.h"
 #include "vision/camera/camera_file_internal.h"
@@ -51,7 +52,7 @@ Result<CameraFile> readCameraFile(const std::string& path, std::optional<double>
   const auto text = readTextFile(path, kMaxBytes);
   if (!text) return text.error();
   auto file = cameraFromText(*text, zoom);
-  if (!file) return Error{file.error().code, "camera file " + path + ": " + file.error().message};
+  if (!file) return printable(Error{file.error().code, "camera file " + path + ": " + file.error().message});
   return file;
 }
 

@@ -1,5 +1,6 @@
 #include "vision/snapshot/image_file.h"
 
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <optional>
@@ -40,7 +41,7 @@ struct Sides {
 };
 
 std::optional<Sides> pngSides(const Bytes& bytes) {
-  if (bytes.text().substr(12, 4) != "IHDR") return std::nullopt;
+  if (bytes.text().size() < 24 || bytes.text().substr(12, 4) != "IHDR") return std::nullopt;
   const auto width = bytes.read(16, 4, true), height = bytes.read(20, 4, true);
   return width && height ? std::optional<Sides>({*width, *height}) : std::nullopt;
 }
@@ -141,6 +142,37 @@ std::optional<Kind> kindOf(const Bytes& bytes) {
   return std::nullopt;
 }
 
+// CRC-32 of ISO 3309, as PNG's chunks carry it.
+std::uint32_t crc32(std::string_view data) {
+  static const auto table = [] {
+    std::array<std::uint32_t, 256> out{};
+    for (std::uint32_t n = 0; n < 256; ++n) {
+      std::uint32_t c = n;
+      for (int k = 0; k < 8; ++k) c = (c & 1) != 0 ? 0xEDB88320u ^ (c >> 1) : c >> 1;
+      out[n] = c;
+    }
+    return out;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (const char c : data) crc = table[(crc ^ static_cast<unsigned char>(c)) & 0xFF] ^ (crc >> 8);
+  return ~crc;
+}
+
+// What is wrong with a PNG's chunks, or nothing.  OpenCV returns the part it could decode of a shortened file.
+std::string pngFault(std::string_view text) {
+  const Bytes bytes(text);
+  for (std::size_t at = 8; at < text.size();) {
+    const auto length = bytes.read(at, 4, true);
+    const auto crc = length ? bytes.read(at + 8 + static_cast<std::size_t>(*length), 4, true) : std::nullopt;
+    if (!crc) return "it ends in the middle of a chunk, at byte " + std::to_string(text.size());
+    const auto chunk = text.substr(at + 4, 4 + static_cast<std::size_t>(*length));
+    if (crc32(chunk) != *crc) return "the checksum of the chunk at byte " + std::to_string(at) + " does not match";
+    if (chunk.substr(0, 4) == "IEND") return {};
+    at += 12 + static_cast<std::size_t>(*length);
+  }
+  return "its end is missing";
+}
+
 std::string sizeText(const Sides& sides) {
   return std::to_string(sides.width) + " x " + std::to_string(sides.height) + " pixels";
 }
@@ -174,6 +206,9 @@ Result<cv::Mat> decodeImage(std::string_view bytes, const ImageLimits& limits) {
   const auto damaged = [&](const std::string& why) {
     return Error{ErrorCode::kInvalidInput, std::string("the ") + size->format + " picture is damaged: " + why};
   };
+  if (std::string_view(size->format) == "png") {
+    if (const std::string fault = pngFault(bytes); !fault.empty()) return damaged(fault);
+  }
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
     cv::Mat image = cv::imdecode(encoded, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);

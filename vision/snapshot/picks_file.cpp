@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/printable.h"
 #include "core/text.h"
 #include "vision/snapshot/views_file.h"
 #include "vision/stereo/measure.h"
@@ -21,7 +22,7 @@ struct Place {
   const std::string& file;
   int line;
   Error error(const std::string& what) const {
-    return {ErrorCode::kInvalidInput, "picks file " + file + ", line " + std::to_string(line) + ": " + what};
+    return printable(Error{ErrorCode::kInvalidInput, "picks file " + file + ", line " + std::to_string(line) + ": " + what});
   }
 };
 
@@ -76,7 +77,7 @@ struct Group {
 };
 
 Error pickError(const Pick& pick, const std::string& what) {
-  return {ErrorCode::kInvalidInput, "picks, line " + std::to_string(pick.line) + ": " + what};
+  return printable(Error{ErrorCode::kInvalidInput, "picks, line " + std::to_string(pick.line) + ": " + what});
 }
 
 Status addPick(const ViewSet& views, const Pick& pick, Group* group) {

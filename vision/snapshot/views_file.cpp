@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/printable.h"
 #include "core/text.h"
 #include "vision/camera/bounded_yaml.h"
 #include "vision/camera/camera_file.h"
@@ -138,7 +139,7 @@ Result<ViewSet> readViewsFile(const std::string& path) {
   try {
     const auto content = jsonFromYaml(*text);
     auto views = content ? readViews(*content, fs::path(path).parent_path()) : Result<ViewSet>(content.error());
-    if (!views) return Error{views.error().code, "views file " + path + ": " + views.error().message};
+    if (!views) return printable(Error{views.error().code, "views file " + path + ": " + views.error().message});
     return views;
   } catch (const std::exception& exception) {   // std::filesystem
     return Error{ErrorCode::kInvalidInput, "views file " + path + ": " + exception.what()};
