@@ -177,6 +177,12 @@ void BridgeServer::take(const std::string& frame) {
   {
     std::lock_guard<std::mutex> lock(m_mutex);
     m_received.push_back({*operation, now_s});
+    if (const auto* message = std::get_if<rosbridge::Publish>(&*operation)) {
+      Topic& topic = m_topics[message->topic];
+      ++topic.count;
+      topic.newest = message->message;
+      topic.times.push_back(now_s);
+    }
     if (const auto* what = std::get_if<rosbridge::Subscribe>(&*operation)) m_subscriptions[what->topic] = *what;
     if (const auto* what = std::get_if<rosbridge::Unsubscribe>(&*operation)) m_subscriptions.erase(what->topic);
   }
@@ -235,21 +241,15 @@ std::vector<Received> BridgeServer::received() const {
 }
 
 int BridgeServer::published(const std::string& topic) const {
-  int count = 0;
-  for (const auto& r : received()) {
-    const auto* message = std::get_if<rosbridge::Publish>(&r.operation);
-    count += message != nullptr && message->topic == topic;
-  }
-  return count;
+  std::lock_guard<std::mutex> lock(m_mutex);
+  const auto found = m_topics.find(topic);
+  return found == m_topics.end() ? 0 : found->second.count;
 }
 
 rosbridge::Body BridgeServer::newest(const std::string& topic) const {
-  rosbridge::Body out;
-  for (const auto& r : received()) {
-    const auto* message = std::get_if<rosbridge::Publish>(&r.operation);
-    if (message != nullptr && message->topic == topic) out = message->message;
-  }
-  return out;
+  std::lock_guard<std::mutex> lock(m_mutex);
+  const auto found = m_topics.find(topic);
+  return found == m_topics.end() ? rosbridge::Body() : found->second.newest;
 }
 
 bool BridgeServer::subscribed(const std::string& topic) const {
@@ -258,11 +258,12 @@ bool BridgeServer::subscribed(const std::string& topic) const {
 }
 
 double BridgeServer::cameAt(const std::string& topic, double since_s) const {
-  for (const auto& r : received()) {
-    const auto* message = std::get_if<rosbridge::Publish>(&r.operation);
-    if (message != nullptr && message->topic == topic && r.at_s >= since_s) return r.at_s;
-  }
-  return -1;
+  std::lock_guard<std::mutex> lock(m_mutex);
+  const auto found = m_topics.find(topic);
+  if (found == m_topics.end()) return -1;
+  const auto& times = found->second.times;
+  const auto at = std::lower_bound(times.begin(), times.end(), since_s);
+  return at == times.end() ? -1 : *at;
 }
 
 void BridgeServer::sendText(const std::string& frame) {

@@ -86,6 +86,12 @@ class BridgeServer {
   std::atomic<bool> m_quiet{false};
   mutable std::mutex m_mutex;            // guards what follows
   std::vector<Received> m_received;
+  struct Topic {
+    int count = 0;
+    rosbridge::Body newest;
+    std::vector<double> times;
+  };
+  std::map<std::string, Topic> m_topics;
   std::map<std::string, rosbridge::Subscribe> m_subscriptions;
   double m_heard_s = 0;
   int m_turns = 0;

@@ -37,8 +37,9 @@ Status RosbridgeCamera::onActivate() {
   what.queue_length = 1;
   std::lock_guard<std::mutex> lock(m_mutex);
   if (m_subscription != 0) return {};
-  m_subscription = link().subscribe(std::move(what), [this](const auto& message, double received_s) {
-    return take(message, received_s);
+  m_subscription = link().subscribe(std::move(what), [this](const auto& message, double received_s) -> Status {
+    if (auto status = take(message, received_s); !status) runner().trouble(status.error());
+    return {};                           // no other device's matter
   });
   return {};
 }

@@ -30,8 +30,11 @@ Status RosbridgeGripper::onOpen() {
   what.type = rosbridge::BoolMessage::kType;
   m_subscription = link().subscribe(std::move(what), [this](const auto& message, double) -> Status {
     const auto read = rosbridge::readAs<rosbridge::BoolMessage>(message.message);
-    if (!read) return read.error();
-    m_holding = read->data;
+    if (!read) {
+      runner().trouble(read.error());    // no other device's matter
+    } else {
+      m_holding = read->data;
+    }
     return {};
   });
   return LinkedDevice<Gripper>::onOpen();
