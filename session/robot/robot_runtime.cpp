@@ -14,6 +14,7 @@ namespace longarm::session {
 namespace {
 
 constexpr double kTick_s = 0.02;
+constexpr double kStepAnswer_s = 15;      // A step may take pictures on a busy machine; a robot that is gone is seen at once.
 constexpr std::size_t kMaxEvents = 1000;  // Waiting for the motion thread; older ones are dropped.
 
 }  // namespace
@@ -382,7 +383,7 @@ Status RobotRuntime::step(double seconds) {
     core->tick();
     m_impl->manual.advance(kTick_s);
     if (core->devices().call_service) {
-      const auto answer = core->devices().call_service("/virtual_robot/step", "{\"seconds\": 0.02}", 2);
+      const auto answer = core->devices().call_service("/virtual_robot/step", "{\"seconds\": 0.02}", kStepAnswer_s);
       if (!answer) {
         m_impl->dispatch();
         return answer.error();

@@ -1,0 +1,84 @@
+#pragma once
+
+/// @file
+/// TaskRun: one run of a task, stage by stage.
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planning/motion/plan.h"
+#include "planning/world/scenario.h"
+#include "session/controllers/snapshot_maker.h"
+#include "session/robot/robot_runtime.h"
+#include "session/task/synthetic_operator.h"
+#include "session/task/task_faults.h"
+#include "session/task_runner.h"
+#include "vision/sketch/feature.h"
+
+namespace longarm::session {
+
+/// What one stage has to say: a sentence for the table, or why it failed.
+using StageResult = Result<std::string>;
+
+/// Used once.  Thread-compatible; the runtime inside has a motion thread of its own.
+class TaskRun {
+ public:
+  TaskRun(const planning::Workcell& workcell, planning::Scenario scenario, const TaskOptions& options, TaskFaults faults);
+  ~TaskRun();
+
+  /// Starts the robot.  @returns the errors of RobotRuntime::start().
+  Status start();
+  /// All stages; the report ends with the first that failed.
+  TaskReport run();
+
+  /// The plan that was played, and the truth when it had been: for judges.
+  const std::optional<planning::Plan>& plan() const { return m_plan; }
+
+ private:
+  StageResult connect();
+  StageResult aim();
+  StageResult snapshot();
+  StageResult measure();
+  StageResult makePlan();
+  StageResult openGripper();
+  StageResult play();
+  StageResult closeGripper();
+  StageResult lift();
+  StageResult verify();
+
+  /// Lets time pass until the condition holds.  @returns kTimeout with `what`, kRefused after a STOP, kDisconnected when
+  /// the robot is gone, kCancelled.
+  Status waitFor(const std::function<bool()>& condition, double timeout_s, const std::string& what);
+  Status pass();
+  Status checkRobot();
+  Status playLoaded(double timeout_s, bool with_faults);
+  Result<TaskTruth> truth();
+  Result<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pipeEnds(const TaskTruth& truth) const;
+  std::optional<StampedFrame> freshFrame(const std::string& camera, double after_s) const;
+  std::optional<TaskStop> firstStop() const;
+  void settleAfterStop();
+  double elapsed() const;
+
+  const std::shared_ptr<const planning::Workcell> m_workcell;
+  const planning::Scenario m_scenario;
+  const TaskOptions m_options;
+  std::string m_object;                  // what is to be grasped
+  double m_radius = 0.02, m_length = 0;  // of it
+  TaskFaults m_faults;
+  SyntheticHand m_hand;
+  double m_started_s = 0, m_lost_since_s = -1;
+  std::pair<std::string, std::string> m_cameras;
+  std::vector<vision::Snapshot> m_snapshots;
+  std::optional<vision::Feature> m_pipe;
+  std::optional<planning::Plan> m_plan;
+  mutable std::mutex m_mutex;            // guards m_stops
+  std::vector<TaskStop> m_stops;
+  std::unique_ptr<RobotRuntime> m_runtime;   // ends first: it reports into the above
+};
+
+}  // namespace longarm::session
