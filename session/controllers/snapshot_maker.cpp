@@ -136,6 +136,7 @@ Result<vision::View> cameraView(const planning::Workcell& workcell, const std::s
   Eigen::VectorXd q = workcell.model->neutral();
   workcell.model->assign(state, q);
   view.X_WC = workcell.model->forward(q, *link);
+  if (file->covariance) view.intrinsics_covariance = file->covariance->topLeftCorner<10, 10>();
   if (file->covariance && file->covariance->rows() == 16) {
     // The file's covariance is of the optical frame in its parent; turned to the root it keeps its size.
     Matrix6d turn = Matrix6d::Zero();
@@ -180,6 +181,7 @@ Result<vision::Snapshot> makeSnapshot(const PictureFiles& files) {
   view.parent = pose->parent;
   view.X_WC = pose->pose;
   view.sigma_px = files.sigma_px;
+  if (file->covariance) view.intrinsics_covariance = file->covariance->topLeftCorner<10, 10>();
   if (!files.pose && file->covariance && file->covariance->rows() == 16) {
     view.pose_covariance = file->covariance->bottomRightCorner<6, 6>();
   }

@@ -70,6 +70,9 @@ json snapshotJson(const vision::Snapshot& snapshot, const std::string& picture) 
               {"camera", vision::toJson(file)}, {"pose", poseJson(snapshot.view.parent, snapshot.view.X_WC)},
               {"sigma_px", snapshot.view.sigma_px}, {"stamp_s", snapshot.stamp_s},
               {"wall_time_s", snapshot.wall_time_s}, {"source", snapshot.source}};
+  if (!snapshot.view.intrinsics_covariance.isZero(0)) {
+    out["intrinsics_covariance"] = numbers(snapshot.view.intrinsics_covariance.data(), 100);
+  }
   if (!snapshot.view.pose_covariance.isZero(0)) {
     out["pose_covariance"] = numbers(snapshot.view.pose_covariance.data(), 36);
   }
@@ -213,6 +216,10 @@ SnapshotPtr readSnapshot(const json& value, const fs::path& folder, const std::s
   readPose(need(value, "pose", where), where + ".pose", view);
   view.sigma_px = number(need(value, "sigma_px", where), where + ".sigma_px");
   if (!(view.sigma_px > 0)) fault(where + ".sigma_px", "is " + formatNumber(view.sigma_px) + ", expected > 0");
+  if (value.contains("intrinsics_covariance")) {
+    const auto list = vectorOf<Eigen::VectorXd>(value["intrinsics_covariance"], 100, where + ".intrinsics_covariance");
+    view.intrinsics_covariance = Eigen::Map<const Eigen::Matrix<double, 10, 10>>(list.data());
+  }
   if (value.contains("pose_covariance")) {
     const auto list = vectorOf<Eigen::VectorXd>(value["pose_covariance"], 36, where + ".pose_covariance");
     view.pose_covariance = Eigen::Map<const Matrix6d>(list.data());

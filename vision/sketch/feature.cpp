@@ -87,6 +87,19 @@ Result<Feature> oneMeasured(const json& list) {
   return bad("features", "holds " + std::to_string(count) + " measured features; expected exactly one");
 }
 
+// The shape that the feature's kind can have, where its first key stands.
+Status readShape(const json& object, Feature* feature) {
+  const auto keep = [](auto read, auto* out) -> Status {
+    if (!read) return read.error();
+    *out = std::move(*read);
+    return {};
+  };
+  if (feature->kind == FeatureKind::kPlane && object.contains("normal")) return keep(planeFromJson(object), &feature->plane);
+  if (feature->kind == FeatureKind::kTriad && object.contains("box")) return keep(boxFromJson(object), &feature->box);
+  if (feature->kind == FeatureKind::kLine && object.contains("radius")) return keep(pipeFromJson(object), &feature->pipe);
+  return {};
+}
+
 Status readHeader(const json& object, Feature* feature) {
   for (const char* key : {"kind", "vertices"}) {
     if (!object.contains(key)) return bad("feature", std::string("key \"") + key + "\" is missing");
@@ -151,6 +164,13 @@ json toJson(const Feature& feature) {
     out["length"] = feature.length();
     out["length_sigma"] = feature.lengthSigma();
   }
+  if (feature.plane) out.update(toJson(*feature.plane));
+  if (feature.box) out.update(toJson(*feature.box, feature.parent));
+  if (feature.pipe) {
+    out["radius"] = feature.pipe->radius;
+    out["radius_sigma"] = feature.pipe->radius_sigma;
+    out["radius_spread"] = feature.pipe->radius_spread;
+  }
   if (!feature.cross_covariance.isZero(0)) out["cross_covariance"] = rowMajor(feature.cross_covariance);
   if (!feature.warnings.empty()) out["warnings"] = feature.warnings;
   return out;
@@ -173,6 +193,7 @@ Result<Feature> featureFromJson(const json& object) {
     if (!vertex) return vertex.error();
     feature.vertices.push_back(*vertex);
   }
+  if (auto status = readShape(object, &feature); !status) return status.error();
   if (object.contains("cross_covariance")) {
     const auto cross = matrixFromJson(object["cross_covariance"], "feature.cross_covariance");
     if (!cross) return cross.error();

@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "core/result.h"
+#include "vision/sketch/shapes.h"
 
 namespace longarm::vision {
 
@@ -33,8 +34,11 @@ struct Feature {
   FeatureKind kind = FeatureKind::kPoint;
   std::string parent = "base_link";
   std::vector<FeatureVertex> vertices;
-  /// Covariance between vertices 0 and 1 from the calibration they share; zero when unknown [m^2].
+  /// Covariance between vertices 0 and 1 from the calibration (and edge picks) they share; zero when unknown [m^2].
   Eigen::Matrix3d cross_covariance = Eigen::Matrix3d::Zero();
+  std::optional<PlaneShape> plane;                              ///< Measured planes.
+  std::optional<BoxShape> box;                                  ///< Measured triads.
+  std::optional<PipeShape> pipe;                                ///< Lines measured by the outlines of a pipe.
   std::vector<std::string> warnings;
 
   /// Line only: unit direction from vertex 0 to 1, length [m] and its standard deviation [m].
@@ -43,9 +47,10 @@ struct Feature {
   double lengthSigma() const;
 };
 
-/// The feature as the headless verbs print and read it; a line adds direction, length and length_sigma.
+/// The feature as the headless verbs print and read it; a line adds direction, length and
+/// length_sigma (a pipe radius, radius_sigma, radius_spread), a plane and a triad what toJson of their shapes holds.
 nlohmann::json toJson(const Feature& feature);
-/// Only name, kind and the vertices' xyz are required.  An object with "features" (what the verb `target`
+/// Only name, kind and the vertices' xyz are required; a shape is read where its keys stand.  An object with "features" (what the verb `target`
 /// prints) is taken when exactly one of them was measured.
 /// @returns kInvalidInput naming the key and value.
 Result<Feature> featureFromJson(const nlohmann::json& json);

@@ -28,6 +28,9 @@ struct View {
   /// Covariance of (rotvec [rad], translation [m]) of X_WC as a left perturbation in `parent`; zero if unknown.
   /// The two parts are split: R <- Exp(rotvec) R, p <- p + translation (the camera turns about its own centre).
   Matrix6d pose_covariance = Matrix6d::Zero();
+  /// Covariance of (fx fy skew cx cy k1 k2 p1 p2 k3) [px^2, 1]; zero if unknown.  Views of one camera (same name and
+  /// numbers) share this error, whatever their poses.
+  Eigen::Matrix<double, 10, 10> intrinsics_covariance = Eigen::Matrix<double, 10, 10>::Zero();
 
   /// Raw pixel of a point given in `parent`; fails as CameraModel::project.
   Result<Eigen::Vector2d> project(const Eigen::Vector3d& p_W) const;

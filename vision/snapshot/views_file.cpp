@@ -59,6 +59,7 @@ Status readCamera(const json& object, const fs::path& folder, const std::string&
   if (!file) return {file.error().code, where + ".camera: " + file.error().message};
   View& view = entry->view;
   view.camera = file->camera;
+  if (file->covariance) view.intrinsics_covariance = file->covariance->topLeftCorner<10, 10>();
   if (view.camera.name.empty()) view.camera.name = view.name;
   if (object.contains("pose")) {
     const auto pose = poseFromJson(object["pose"], where + ".pose");

@@ -37,10 +37,18 @@ struct ViewSet {
 /// @returns kInvalidInput or kNotFound naming file, view, key and value.  Pictures are not opened.
 Result<ViewSet> readViewsFile(const std::string& path);
 
+/// How the picks of a line are to be read.
+enum class PickRule {
+  kMatched,     ///< kind "point", "line", "plane", "triad": the same vertex in every view.
+  kEdge,        ///< kind "edge": vertices 0, 1 anywhere along a line, its ends unmatched between views.
+  kPipe         ///< kind "pipe": vertices 0, 1 on one outline of a round pipe, 2, 3 on the other.
+};
+
 /// One row of picks.csv.
 struct Pick {
   std::string feature;
-  FeatureKind kind = FeatureKind::kPoint;
+  FeatureKind kind = FeatureKind::kPoint;            ///< Edges and pipes measure lines.
+  PickRule rule = PickRule::kMatched;
   int vertex = 0;
   std::string view;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -62,7 +70,8 @@ struct MeasuredFeature {
 /// Measures every feature, in the order of their first picks.  A feature that cannot be measured keeps its
 /// reason; picks that contradict each other or the views are an error of the whole.
 /// @returns kInvalidInput naming line and value: unknown view, vertex the kind does not have, one feature of
-///   two kinds, the same vertex twice in one view.  Pure function.
+///   two kinds (a line may have matched ends in some views and be an edge in others), the same vertex twice in one view.
+///   Pure function.
 Result<std::vector<MeasuredFeature>> measureAll(const ViewSet& views, const std::vector<Pick>& picks,
                                                 const TriangulationOptions& options = {});
 

@@ -14,6 +14,25 @@
 
 namespace longarm::vision {
 
+/// Two picks anywhere on a line in one view.
+struct LineSighting {
+  const View* view = nullptr;
+  Eigen::Vector2d pixel_a, pixel_b;      ///< Raw pixels, well apart.
+};
+
+/// All that was marked of a line.
+struct LinePicks {
+  std::vector<Sighting> end0, end1;      ///< The same two ends, matched between views; either may be empty.
+  std::vector<LineSighting> along;       ///< Views in which the line was marked somewhere.
+};
+
+/// The line that fits all of its picks: matched ends count in both directions, picks along the line only across it.
+/// An end that was matched nowhere lies on the ray of the first view of `along` (its pixel_a for end 0, pixel_b for
+/// end 1).  Reprojection-optimal; with picks along the line in two views alone this is the meeting of their planes.
+/// @returns kInvalidInput as triangulate(); kDegenerate as triangulate(), or when an end hangs on the planes alone and
+///   these meet at less than a sine of 0.08 (see lineFromPlanes).  Pure function.
+Result<Feature> estimateLine(const std::string& name, const LinePicks& picks, const TriangulationOptions& options = {});
+
 /// Line whose two ends were picked in two or more views each (algorithms: matched ends, independent of how
 /// the line lies to the baseline).  Pick noise is independent between the ends; the pose covariance of a view
 /// that saw both is common to them, so that it hardly changes the length: see Feature::cross_covariance.
@@ -21,12 +40,6 @@ namespace longarm::vision {
 ///   the two ends coincide.  Pure function.
 Result<Feature> estimateLine(const std::string& name, const std::vector<Sighting>& end0,
                              const std::vector<Sighting>& end1, const TriangulationOptions& options = {});
-
-/// Two picks anywhere on a line in one view.
-struct LineSighting {
-  const View* view = nullptr;
-  Eigen::Vector2d pixel_a, pixel_b;      ///< Raw pixels, well apart.
-};
 
 /// An endless line, cut where the first view's two picks see it.
 struct PlaneLine {

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "core/text.h"
+#include "vision/stereo/chi_square.h"
 
 namespace longarm::vision {
 namespace {
@@ -24,11 +25,6 @@ struct Ray {
 std::string label(const View& view) { return view.name.empty() ? std::string("a view") : "view \"" + view.name + "\""; }
 
 double sigmaOf(const Sighting& sighting) { return sighting.sigma_px > 0 ? sighting.sigma_px : sighting.view->sigma_px; }
-
-bool sameView(const View& a, const View& b) {
-  return &a == &b || (!a.name.empty() && a.name == b.name && a.X_WC.matrix() == b.X_WC.matrix() &&
-                      a.pose_covariance == b.pose_covariance);
-}
 
 // Angle between two lines, 0 ... 90 degrees.
 double lineAngle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))); }
@@ -182,43 +178,33 @@ Status checkInFront(const std::vector<Sighting>& sightings, const std::vector<Ra
   return {};
 }
 
-bool hasPoseCovariance(const View& view) { return !view.pose_covariance.isZero(0); }
-
-// d xyz / d pose of each view with a known covariance; and the picks' chi-square with it taken into account.
-std::vector<PoseSensitivity> sensitivitiesAt(const std::vector<Sighting>& sightings, const Vector3d& X,
-                                             const Matrix3d& covariance, double* chi2) {
-  std::vector<PoseSensitivity> out;
+// d xyz / d calibration of everything with a known covariance; and the picks' chi-square with it taken into account.
+std::vector<CalibrationEffect> effectsAt(const std::vector<Sighting>& sightings, const Vector3d& X,
+                                         const Matrix3d& covariance, double* chi2) {
+  std::vector<CalibrationEffect> out;
   *chi2 = 0;
   for (const auto& sighting : sightings) {
     const View& view = *sighting.view;
     const Matrix3d R = view.X_WC.linear();
-    const auto projection = view.camera.projectWithJacobian(R.transpose() * (X - view.X_WC.translation()));
+    const Vector3d p_C = R.transpose() * (X - view.X_WC.translation());
+    const auto projection = view.camera.projectWithJacobian(p_C);
     if (!projection) continue;
     double variance = sigmaOf(sighting) * sigmaOf(sighting);
-    const double weight = 1 / variance;
-    if (hasPoseCovariance(view)) {
-      const Eigen::Matrix<double, 2, 3> J = projection->d_point * R.transpose();
-      Eigen::Matrix<double, 2, 6> by_pose;
-      by_pose << J * skew(X - view.X_WC.translation()), -J;
+    const Eigen::Matrix<double, 2, 3> J = projection->d_point * R.transpose();
+    const Eigen::Matrix<double, 3, 2> gain = -covariance * J.transpose() / variance;
+    if (knowsPoseError(view)) {
+      const Eigen::Matrix<double, 2, 6> by_pose = pixelByPose(J, X - view.X_WC.translation());
       variance += (by_pose * view.pose_covariance * by_pose.transpose()).trace();
-      const Eigen::Matrix<double, 3, 6> d_pose = -covariance * J.transpose() * weight * by_pose;
-      auto known = std::find_if(out.begin(), out.end(), [&](const auto& s) { return sameView(*s.view, view); });
-      if (known == out.end()) {
-        out.push_back({&view, d_pose});
-      } else {
-        known->d_pose += d_pose;
-      }
+      addEffect(view, CalibrationPart::kPose, gain * by_pose, &out);
+    }
+    if (knowsIntrinsicsError(view)) {
+      const Eigen::Matrix<double, 2, 10> by_intrinsics = pixelByIntrinsics(view.camera, p_C.head<2>() / p_C.z());
+      variance += (by_intrinsics * view.intrinsics_covariance * by_intrinsics.transpose()).trace();
+      addEffect(view, CalibrationPart::kIntrinsics, gain * by_intrinsics, &out);
     }
     *chi2 += (sighting.pixel - projection->pixel).squaredNorm() / variance;
   }
   return out;
-}
-
-// 99.9 % quantile of chi-square (Wilson & Hilferty, PNAS 17, 1931).
-double chi2Limit(int degrees_of_freedom) {
-  const double v = 2.0 / (9.0 * degrees_of_freedom);
-  const double root = 1 - v + 3.0902 * std::sqrt(v);
-  return degrees_of_freedom * root * root * root;
 }
 
 void addWarnings(const std::vector<Sighting>& sightings, const TriangulationOptions& options, double chi2,
@@ -243,7 +229,7 @@ void addWarnings(const std::vector<Sighting>& sightings, const TriangulationOpti
                               " % (1 sigma): the stated covariance is a rough guide");
   }
   const int degrees_of_freedom = 2 * static_cast<int>(sightings.size()) - 3;
-  if (chi2 > chi2Limit(degrees_of_freedom)) {
+  if (chi2 > chi2Limit(degrees_of_freedom, kChi2Gross)) {
     point->warnings.push_back("the picks disagree: " + formatFixed(point->reprojection_rms_px, 2) +
                               " px rms, rays miss by " + formatFixed(1e3 * point->miss_m, 1) +
                               " mm; check the picks, then the calibration");
@@ -253,13 +239,7 @@ void addWarnings(const std::vector<Sighting>& sightings, const TriangulationOpti
 }  // namespace
 
 Matrix3d crossCovariance(const TriangulatedPoint& a, const TriangulatedPoint& b) {
-  Matrix3d out = Matrix3d::Zero();
-  for (const auto& sa : a.sensitivities) {
-    for (const auto& sb : b.sensitivities) {
-      if (sameView(*sa.view, *sb.view)) out += sa.d_pose * sa.view->pose_covariance * sb.d_pose.transpose();
-    }
-  }
-  return out;
+  return a.effects.empty() || b.effects.empty() ? Matrix3d::Zero() : Matrix3d(sharedCovariance(a.effects, b.effects));
 }
 
 Result<TriangulatedPoint> triangulate(const std::vector<Sighting>& sightings, const TriangulationOptions& options) {
@@ -289,7 +269,7 @@ Result<TriangulatedPoint> triangulate(const std::vector<Sighting>& sightings, co
     for (std::size_t j = 0; j < i; ++j) point.miss_m = std::max(point.miss_m, missDistance((*rays)[i], (*rays)[j]));
   }
   double chi2 = 0;
-  point.sensitivities = sensitivitiesAt(sightings, point.xyz, point.covariance, &chi2);
+  point.effects = effectsAt(sightings, point.xyz, point.covariance, &chi2);
   point.covariance += crossCovariance(point, point);
   if (!point.covariance.allFinite()) return tooParallel(point.parallax, options.refuse_parallax);
   addWarnings(sightings, options, chi2, &point);

@@ -10,6 +10,7 @@
 
 #include "core/result.h"
 #include "vision/snapshot/view.h"
+#include "vision/stereo/calibration_effect.h"
 
 namespace longarm::vision {
 
@@ -28,20 +29,14 @@ struct TriangulationOptions {
   double huber_sigmas = 0;
 };
 
-/// How a point moves with the pose of one view: d xyz / d (rotvec, translation) of View::pose_covariance.
-struct PoseSensitivity {
-  const View* view = nullptr;
-  Eigen::Matrix<double, 3, 6> d_pose;
-};
-
 /// A measured point Q.
 struct TriangulatedPoint {
   Eigen::Vector3d xyz;                          ///< In the views' parent frame [m].
-  Eigen::Matrix3d covariance;                   ///< Pick noise plus pose covariance of the views [m^2].
+  Eigen::Matrix3d covariance;                   ///< Pick noise plus the views' calibration [m^2].
   double miss_m = 0;                            ///< Largest distance between any two viewing rays near Q [m].
   double reprojection_rms_px = 0;               ///< sqrt(sum |r|^2 / (2 N)) over N views.
   double parallax = 0;                          ///< Largest angle between two rays [rad].
-  std::vector<PoseSensitivity> sensitivities;   ///< Of the views whose pose covariance is known.
+  std::vector<CalibrationEffect> effects;       ///< Of every calibration whose covariance is known.
   std::vector<std::string> warnings;
 };
 
