@@ -24,6 +24,33 @@ struct UndistortOptions {
 
 std::string millimetres(double metres) { return formatFixed(metres * 1e3, 2); }
 
+constexpr double kDegree = 0.017453292519943295;
+
+// What the kind measures beyond its vertices, as a line of text.
+std::string shapeNote(const std::string& name, const vision::Feature& feature) {
+  std::string note;
+  if (feature.kind == vision::FeatureKind::kLine) {
+    note += name + ": length " + millimetres(feature.length()) + " mm +- " + millimetres(2 * feature.lengthSigma()) + " mm\n";
+  }
+  if (feature.pipe) {
+    note += name + ": radius " + millimetres(feature.pipe->radius) + " mm +- " + millimetres(2 * feature.pipe->radius_sigma) + " mm\n";
+  }
+  if (feature.plane) {
+    const auto& n = feature.plane->normal;
+    note += name + ": normal " + formatFixed(n.x(), 4) + " " + formatFixed(n.y(), 4) + " " + formatFixed(n.z(), 4) + " +- " +
+            formatFixed(2 * feature.plane->angleError() / kDegree, 2) + " degrees\n";
+  }
+  if (feature.box) {
+    const auto sigma = feature.box->sizeSigma();
+    note += name + ": box";
+    for (int i = 0; i < 3; ++i) {
+      note += (i == 0 ? " " : " x ") + millimetres(feature.box->size[i]) + " mm (+- " + millimetres(2 * sigma[i]) + ")";
+    }
+    note += ", edges off 90 degrees by " + formatFixed(feature.box->orthogonality_error / kDegree, 2) + "\n";
+  }
+  return note;
+}
+
 std::string targetTable(const std::vector<vision::MeasuredFeature>& features) {
   std::vector<std::vector<std::string>> rows = {{"feature", "kind", "vertex", "x m", "y m", "z m", "+-mm (2 sigma)", "miss mm", "rms px"}};
   std::string notes;
@@ -38,9 +65,7 @@ std::string targetTable(const std::vector<vision::MeasuredFeature>& features) {
                       formatFixed(v.xyz.z(), 4), millimetres(2 * std::sqrt(v.covariance.trace())), millimetres(v.miss_m),
                       formatFixed(v.reprojection_rms_px, 2)});
     }
-    if (f.kind == vision::FeatureKind::kLine) {
-      notes += f.name + ": length " + millimetres(f.outcome->length()) + " mm +- " + millimetres(2 * f.outcome->lengthSigma()) + " mm\n";
-    }
+    notes += shapeNote(f.name, *f.outcome);
     for (const auto& warning : f.outcome->warnings) notes += f.name + ": warning: " + warning + "\n";
   }
   return tableText(rows) + notes;
@@ -121,7 +146,7 @@ Result<Answer> runUndistort(const UndistortOptions& options) {
 
 void addTargetVerbs(Cli& cli) {
   cli.addVerb<TargetOptions>(
-      cli.app(), "target", "Measure points and lines from picks in two or more views",
+      cli.app(), "target", "Measure points, lines, planes, boxes and pipes from picks in two or more views",
       "longarm target --views views.yaml --picks picks.csv --json",
       [](CLI::App& verb, TargetOptions& options) {
         verb.add_option("--views", options.views, "Cameras of the measurement (views.yaml)")->required();

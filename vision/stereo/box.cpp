@@ -99,7 +99,7 @@ Status checkEdgesSeen(const Vertices& vertices, const BoxOptions& options) {
     if (where.empty()) {
       return {ErrorCode::kDegenerate, edgeName(edge) + " is not seen whole in any view: mark both its ends in two views"};
     }
-    return {ErrorCode::kDegenerate, edgeName(edge) + " is only " + formatFixed(shortest, 0) + " px long in " + where + " (need " +
+    return {ErrorCode::kDegenerate, edgeName(edge) + " is only " + formatFixed(shortest, 1) + " px long in " + where + " (need " +
                                         formatFixed(options.min_edge_px, 0) +
                                         " px in two views): it points at the camera or is too short. Take a view from "
                                         "the side or nearer, or mark a longer edge"};
