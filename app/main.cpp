@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   longarm::app::addTargetVerbs(cli);
   longarm::app::addRobotVerbs(cli);
   longarm::app::addPlanVerbs(cli);
+  longarm::app::addCalibrateVerbs(cli);
   longarm::app::addListVerb(cli);
   longarm::app::addRunVerb(cli);
   longarm::app::ConsoleArguments console;

@@ -1,7 +1,7 @@
 # Every third-party package, found once.  Debian 12's versions; the packages are listed in cmake/packages.txt.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -20,7 +20,9 @@ target_include_directories(longarm_ompl SYSTEM INTERFACE ${LONGARM_OMPL_INCLUDE}
 target_link_libraries(longarm_ompl INTERFACE ${LONGARM_OMPL_LIBRARY})
 add_library(longarm_opencv INTERFACE)
 target_include_directories(longarm_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(longarm_opencv INTERFACE ${OpenCV_LIBS})
+target_link_libraries(longarm_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs opencv_calib3d)
+add_library(longarm_opencv_boards INTERFACE)  # ChArUco is in OpenCV's contributed modules
+target_link_libraries(longarm_opencv_boards INTERFACE longarm_opencv opencv_aruco)
 
 find_package(Qt5 5.15 REQUIRED COMPONENTS Core Network WebSockets)
 if(LONGARM_BUILD_GUI)

@@ -79,6 +79,7 @@ std::string tableText(const std::vector<std::vector<std::string>>& rows);
 void addTargetVerbs(Cli& cli);       ///< target, epipolar, undistort
 void addRobotVerbs(Cli& cli);        ///< robot info | fk | ik
 void addPlanVerbs(Cli& cli);         ///< plan, check
+void addCalibrateVerbs(Cli& cli);    ///< calibrate intrinsics | fixture | stereo | pose | zoom | compare
 void addListVerb(Cli& cli);          ///< list, completion
 void addRunVerb(Cli& cli);           ///< run
 
