@@ -77,7 +77,7 @@ void addCalibrateVerbs(Cli& cli) {
   addIntrinsicsVerb(cli, *calibrate);
   addFixtureVerb(cli, *calibrate);
   //S addStereoVerb(cli, *calibrate);
-  //S addPoseVerb(cli, *calibrate);
+  addPoseVerb(cli, *calibrate);
   //S addZoomVerb(cli, *calibrate);
   //S addCompareVerb(cli, *calibrate);
 }

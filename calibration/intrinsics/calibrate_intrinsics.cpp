@@ -91,7 +91,13 @@ void fillViews(const IntrinsicsModel& model, const ArrowCovariance& inverse, dou
       sum += residuals[k][i].squaredNorm();
       report.outliers += report.used && model.weights()[k][i] <= 0 ? 1 : 0;
     }
-    if (report.outliers > 0) report.why = std::to_string(report.outliers) + " corners left out (beyond 4 sigma)";
+    if (report.outliers > 0) {
+      report.why = std::to_string(report.outliers) + " of " + std::to_string(report.corners) + " corners left out (beyond 4 sigma)";
+      if (report.outliers * 20 > report.corners) {
+        result->warnings.push_back(report.name + ": " + report.why +
+                                   "; look for glare, a bent board, or a refinement window that reaches the neighbouring corners");
+      }
+    }
     report.rms_px = report.corners > 0 ? std::sqrt(sum / (2.0 * report.corners)) : 0;
     if (!std::isfinite(report.rms_px)) report.rms_px = -1;
     result->views.push_back(report);

@@ -1,6 +1,7 @@
 #include "calibration/intrinsics/choose_lens.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 
@@ -8,6 +9,8 @@ namespace longarm::calibration::internal {
 namespace {
 
 constexpr double kFloorPx = 1e-3;
+constexpr double kLeastSkew = 0.002;
+constexpr double kCertainSkew = 400;
 
 }  // namespace
 
@@ -16,6 +19,12 @@ std::vector<LensGroup> openGroups(const LensChoice& choice) {
   if (!choice.distortion) groups = {{{kK1}, 9.0}, {{kK2}, 9.0}, {{kP1, kP2}, 11.83}};
   if (!choice.skew && (!choice.distortion || choice.open_skew)) groups.push_back({{kSkew}, 9.0});
   return groups;
+}
+
+bool isKept(const LensGroup& group, double significance, const vision::CameraModel& camera) {
+  if (significance <= group.threshold) return false;
+  if (group.parameters.front() != kSkew) return true;
+  return std::abs(camera.skew) > kLeastSkew * camera.fx || significance > kCertainSkew;
 }
 
 double significance(ArrowModel* model, const vision::CameraModel& camera, const LensMask& mask, int offset,

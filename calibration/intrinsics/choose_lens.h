@@ -32,6 +32,10 @@ struct LensGroup {
 };
 std::vector<LensGroup> openGroups(const LensChoice& choice);
 
+/// Whether a group of this significance stays on.  Skew below 0.1 degree between the pixel axes must be beyond
+/// 20 sigma: sensors have none, and boards that are not quite flat imitate it.
+bool isKept(const LensGroup& group, double significance, const vision::CameraModel& camera);
+
 /// v^T C^-1 v of a group at a model's optimum; 0 where the equations are singular.
 /// @param offset Index of the first lens parameter among the shared ones.
 double significance(ArrowModel* model, const vision::CameraModel& camera, const LensMask& mask, int offset,
@@ -58,7 +62,7 @@ ChosenLens chooseLens(Model* model, const LensChoice& choice) {
     const ArrowOutcome outcome = minimise(*model);
     const double found = internal::significance(model, model->camera(), wider, model->lensOffset(), group.parameters,
                                                 model->degreesOfFreedom());
-    if (found > group.threshold) {
+    if (internal::isKept(group, found, model->camera())) {
       out.mask = wider;
       out.outcome = {outcome.cost, out.outcome.iterations + outcome.iterations, outcome.converged};
     } else {
