@@ -76,10 +76,7 @@ void addCalibrateVerbs(Cli& cli) {
   calibrate->footer("Example:\n  longarm calibrate intrinsics --board 9x6 --square 0.025 left*.jpg --out left.yaml");
   addIntrinsicsVerb(cli, *calibrate);
   addFixtureVerb(cli, *calibrate);
-  //S addStereoVerb(cli, *calibrate);
   addPoseVerb(cli, *calibrate);
-  //S addZoomVerb(cli, *calibrate);
-  //S addCompareVerb(cli, *calibrate);
 }
 
 }  // namespace longarm::app

@@ -5,6 +5,7 @@
 
 #include "calibration/intrinsics/coverage.h"
 #include "calibration/intrinsics/initial_guess.h"
+#include "calibration/intrinsics/plane_homography.h"
 #include "calibration/intrinsics/reject_outliers.h"
 #include "calibration/solve/robust.h"
 #include "core/text.h"
@@ -43,6 +44,15 @@ Status checkNumbers(const std::vector<BoardView>& views, int width, int height) 
 
 bool isUsed(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w > 0; });
+}
+
+// One picture of a plane leaves two of the intrinsics free, whatever distortion pretends to tell.
+Status requireTwoPlanes(const IntrinsicsModel& model, const std::vector<BoardView>& views) {
+  if (model.viewsUsed() != 1) return {};
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    if (isUsed(model.weights()[k]) && planeOf(views[k].corners).flatness >= 0.02) return {};
+  }
+  return refused("one view of a flat board does not determine a camera; add views of it at other tilts (8 or more are recommended)");
 }
 
 // Rank and absolute size of what is known.
@@ -177,6 +187,7 @@ Result<IntrinsicsResult> calibrateIntrinsics(const std::vector<BoardView>& views
     rejectOutliers(&model, views, &why);
     if (!options.lens.distortion) model.clearDistortion();
   }
+  if (auto status = requireTwoPlanes(model, views); !status) return status.error();
   const ChosenLens lens = chooseLens(&model, options.lens);
   auto result = finish(&model, views, lens, why);
   if (!result) return result;

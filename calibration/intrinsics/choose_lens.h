@@ -54,19 +54,23 @@ ChosenLens chooseLens(Model* model, const LensChoice& choice) {
   out.mask = LensMask::of(choice.skew.value_or(false), choice.distortion.value_or(0));
   model->setMask(out.mask);
   out.outcome = minimise(*model);
-  for (const auto& group : internal::openGroups(choice)) {
-    const Model before = *model;
-    LensMask wider = out.mask;
-    for (const int p : group.parameters) wider.free[static_cast<std::size_t>(p)] = true;
-    model->setMask(wider);
-    const ArrowOutcome outcome = minimise(*model);
-    const double found = internal::significance(model, model->camera(), wider, model->lensOffset(), group.parameters,
-                                                model->degreesOfFreedom());
-    if (internal::isKept(group, found, model->camera())) {
-      out.mask = wider;
-      out.outcome = {outcome.cost, out.outcome.iterations + outcome.iterations, outcome.converged};
-    } else {
-      *model = before;
+  // A second round: what drowned in a misfit that a later group explains.
+  for (int round = 0; round < 2; ++round) {
+    for (const auto& group : internal::openGroups(choice)) {
+      if (out.mask.free[static_cast<std::size_t>(group.parameters.front())]) continue;
+      const Model before = *model;
+      LensMask wider = out.mask;
+      for (const int p : group.parameters) wider.free[static_cast<std::size_t>(p)] = true;
+      model->setMask(wider);
+      const ArrowOutcome outcome = minimise(*model);
+      const double found = internal::significance(model, model->camera(), wider, model->lensOffset(), group.parameters,
+                                                  model->degreesOfFreedom());
+      if (internal::isKept(group, found, model->camera())) {
+        out.mask = wider;
+        out.outcome = {outcome.cost, out.outcome.iterations + outcome.iterations, outcome.converged};
+      } else {
+        *model = before;
+      }
     }
   }
   return out;

@@ -54,7 +54,7 @@ Result<LoopStarts> singleStarts(const LoopProblem& problem, const LoopOptions& o
   bool spoiled = !minima.ok();
   if (minima) {
     const auto lengths = misses(base.camera, observations, minima->front().T);
-    spoiled = *std::max_element(lengths.begin(), lengths.end()) > outlierLimit(lengths, options.sigma_px);
+    spoiled = *std::max_element(lengths.begin(), lengths.end()) > 4.5 * options.sigma_px.value_or(kClickSigma);
   }
   if (spoiled && can_drop) {
     std::vector<bool> inliers;
