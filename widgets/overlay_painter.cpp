@@ -1,7 +1,10 @@
 #include "widgets/overlay_painter.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include <QFontMetricsF>
 #include <QPainterPath>
 #include <QVector>
 
@@ -93,12 +96,25 @@ void paintMarker(QPainter& painter, const OverlayShape& shape, const RoleStyle& 
   }
 }
 
-void paintText(QPainter& painter, const OverlayShape& shape, const RoleStyle& style, const PixelToWidget& to_widget) {
+// Depth ticks crowd together far away: a label that would cover one drawn before is left out.
+void paintText(QPainter& painter, const OverlayShape& shape, const RoleStyle& style, const PixelToWidget& to_widget,
+               std::vector<QRectF>& ticks) {
   if (shape.points.empty()) return;
   const auto at = to_widget(shape.points.front());
   if (!at) return;
-  const double lift = shape.role == OverlayRole::kDepthTick ? 5 : kHandleRadius + 5;
-  paintHaloText(painter, *at + QPointF(lift, -lift), QString::fromStdString(shape.text), style.color);
+  const bool tick = shape.role == OverlayRole::kDepthTick;
+  const double lift = tick ? 5 : kHandleRadius + 5;
+  const QString text = QString::fromStdString(shape.text);
+  const QFontMetricsF metrics(painter.font());
+  QPointF anchor = *at + QPointF(lift, tick ? lift + metrics.ascent() : -lift);
+  const double reach = painter.viewport().right() - metrics.horizontalAdvance(text) - 3;
+  anchor.setX(std::max(3.0, std::min(anchor.x(), reach)));
+  if (tick) {
+    const QRectF box = metrics.boundingRect(text).translated(anchor).adjusted(-3, 0, 3, 0);
+    if (std::any_of(ticks.begin(), ticks.end(), [&](const QRectF& other) { return other.intersects(box); })) return;
+    ticks.push_back(box);
+  }
+  paintHaloText(painter, anchor, text, style.color);
 }
 
 }  // namespace
@@ -114,13 +130,14 @@ void paintOverlay(QPainter& painter, const vision::Overlay& overlay, const Theme
                   const PixelToWidget& to_widget, const OverlayLook& look) {
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
+  std::vector<QRectF> ticks;
   for (const auto& shape : overlay.shapes) {
     const RoleStyle style = theme.role(shape.role);
     switch (shape.kind) {
       case OverlayShape::Kind::kPolyline: paintPolyline(painter, shape, style, to_widget, look); break;
       case OverlayShape::Kind::kMarker: paintMarker(painter, shape, style, to_widget, look); break;
       case OverlayShape::Kind::kText:
-        if (look.labels) paintText(painter, shape, style, to_widget);
+        if (look.labels) paintText(painter, shape, style, to_widget, ticks);
         break;
     }
   }

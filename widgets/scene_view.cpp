@@ -55,8 +55,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), m_vtk(std::make_unique<
   style->SetMotionFactor(8);
   m_vtk->window->GetInteractor()->SetInteractorStyle(style);
   m_vtk->window->GetInteractor()->SetDesiredUpdateRate(30);
-  // The window is composed by Qt: rendering from VTK's own events would run outside our 30 Hz limit.
-  m_vtk->window->GetInteractor()->EnableRenderOff();
+  // The interactor must be allowed to render: QVTKOpenGLNativeWidget paints through it, and stays black otherwise.
   m_surface->installEventFilter(this);
   m_render_timer.setSingleShot(true);
   connect(&m_render_timer, &QTimer::timeout, this, &SceneView::render);

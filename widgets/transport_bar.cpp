@@ -107,13 +107,13 @@ void TransportBar::showSpeed(double speed) {
 void TransportBar::setState(const TransportState& state) {
   m_state = state;
   m_play->setEnabled(state.can_play && !(state.playing && state.speed > 0));
-  m_back_up->setEnabled(state.can_play && !(state.playing && state.speed < 0));
+  m_back_up->setEnabled(state.can_back_up && !(state.playing && state.speed < 0));
   m_pause->setEnabled(state.playing);
   m_to_start->setEnabled(state.loaded && state.can_scrub);
   m_to_end->setEnabled(state.loaded && state.can_scrub);
   const QString why = state.why_not.toHtmlEscaped();
   m_play->setToolTip(state.can_play ? tr("Move the robot along the path (P)") : why);
-  m_back_up->setToolTip(state.can_play ? tr("Move the robot back along its path (B)") : why);
+  m_back_up->setToolTip(state.can_back_up ? tr("Move the robot back along its path (B)") : state.why_not_back_up.toHtmlEscaped());
   m_time->setScrubbable(state.can_scrub);
   m_time->setCursorTime(state.cursor_s);
   m_caption->setText(state.can_play || state.why_not.isEmpty() ? state.caption

@@ -20,8 +20,9 @@ namespace longarm::widgets {
 struct TransportState {
   bool loaded = false;             ///< There is a motion to play.
   bool playing = false;
-  bool can_play = false;           ///< Play, back up.
+  bool can_play = false, can_back_up = false;
   QString why_not;                 ///< Shown when can_play is false.
+  QString why_not_back_up;         ///< Tooltip when can_back_up is false.
   bool can_scrub = false;
   double cursor_s = 0, duration_s = 0;
   double speed = 1;                ///< Wanted factor, -2 ... 2.

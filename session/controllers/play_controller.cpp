@@ -1,0 +1,164 @@
+#include "session/controllers/play_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace longarm::session {
+
+namespace {
+
+using planning::PlayerState;
+
+constexpr double kAtEnd_s = 1e-6;
+constexpr double kSlowest = 0.05;          // A wanted factor below this would look like a robot that does not obey.
+
+bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || state == PlayerState::kPausing; }
+
+bool same(const PlayState& a, const PlayState& b) {
+  return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing && a.can_play == b.can_play &&
+         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale &&
+         a.why_not_play == b.why_not_play && a.why_not_back_up == b.why_not_back_up && a.cursor_s == b.cursor_s &&
+         a.duration_s == b.duration_s && a.speed == b.speed && a.rate == b.rate;
+}
+
+}  // namespace
+
+PlayController::PlayController(Document& document, PlanController& plans, QObject* parent)
+    : QObject(parent), m_document(document), m_plans(plans) {
+  m_observer = m_document.observe([this](const Change& change) {
+    if (change.kind == ChangeKind::kPlanChanged) m_cursor = 0;
+    forgetOtherPlan();
+    rebuild();
+  });
+}
+
+PlayController::~PlayController() { m_document.unobserve(m_observer); }
+
+void PlayController::setRuntime(RobotRuntime* runtime) {
+  m_runtime = runtime;
+  m_loaded = {};
+  m_status = runtime != nullptr ? runtime->status() : RuntimeStatus();
+  rebuild();
+}
+
+const planning::Plan* PlayController::plan() const {
+  const auto& record = m_document.plan();
+  return record && record->plan.ok() && !record->plan.trajectory.empty() ? &record->plan : nullptr;
+}
+
+void PlayController::refresh(const RuntimeStatus& status) {
+  m_status = status;
+  if (status.player == PlayerState::kEmpty) m_loaded = {};
+  forgetOtherPlan();
+  rebuild();
+}
+
+void PlayController::forgetOtherPlan() {
+  if (!m_loaded.valid() || m_runtime == nullptr || isMoving(m_status.player)) return;
+  if (m_document.plan() && m_document.plan()->id == m_loaded) return;
+  m_runtime->unload();
+  m_loaded = {};
+}
+
+QString PlayController::whyNotMove() const {
+  if (m_runtime == nullptr) return tr("No robot is connected.");
+  if (m_status.link != LinkState::kUp) {
+    return tr("The link is %1: %2").arg(QString::fromLatin1(toString(m_status.link)), QString::fromStdString(m_status.link_text));
+  }
+  if (m_status.gate.stopped) return tr("STOP is latched: hold Reset first.");
+  return {};
+}
+
+void PlayController::checkPlan(PlayState& next) const {
+  const auto joints = m_runtime != nullptr ? m_runtime->jointState() : nullptr;
+  if (!joints || next.loaded) return;
+  const Status fresh = m_plans.checkFresh(*joints);
+  if (fresh) return;
+  next.stale = fresh.error().code == ErrorCode::kStale;
+  next.why_not_play = QString::fromStdString(fresh.error().message);
+}
+
+void PlayController::rebuild() {
+  PlayState next;
+  const planning::Plan* shown = plan();
+  next.speed = m_speed;
+  next.has_plan = shown != nullptr;
+  next.loaded = shown != nullptr && m_loaded.valid() && m_document.plan()->id == m_loaded;
+  next.playing = isMoving(m_status.player) && m_loaded.valid();
+  if (shown != nullptr) {
+    next.duration_s = shown->trajectory.duration();
+    next.cursor_s = next.loaded ? m_status.cursor : std::clamp(m_cursor, 0.0, next.duration_s);
+    next.rate = next.loaded ? m_status.rate : 0;
+    next.can_scrub = !next.playing;
+    checkPlan(next);
+    if (next.why_not_play.isEmpty()) next.why_not_play = whyNotMove();
+    next.why_not_back_up = next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
+    if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
+      next.why_not_play = tr("The motion is done. Back up, or plan the next one.");
+    }
+  } else {
+    next.why_not_play = next.why_not_back_up = tr("There is no plan. Choose a motion first.");
+  }
+  next.can_play = next.why_not_play.isEmpty();
+  next.can_back_up = next.why_not_back_up.isEmpty();
+  if (same(next, m_state)) return;
+  m_state = next;
+  Q_EMIT changed();
+}
+
+Status PlayController::load() {
+  if (m_loaded.valid() && m_document.plan()->id == m_loaded) return {};
+  const auto joints = m_runtime->jointState();
+  if (!joints) return {ErrorCode::kStale, "The robot's joints are not known yet."};
+  if (const Status fresh = m_plans.checkFresh(*joints); !fresh) return fresh;
+  if (const Status loaded = m_runtime->load(plan()->trajectory); !loaded) return loaded;
+  m_loaded = m_document.plan()->id;
+  return {};
+}
+
+void PlayController::move(double direction) {
+  const QString& why = direction > 0 ? m_state.why_not_play : m_state.why_not_back_up;
+  if (!why.isEmpty()) {
+    Q_EMIT failed(why);
+    return;
+  }
+  if (const Status loaded = load(); !loaded) {
+    Q_EMIT failed(QString::fromStdString(loaded.error().message));
+    return;
+  }
+  const double size = std::abs(m_speed) < kSlowest ? 1.0 : std::abs(m_speed);
+  setSpeed(direction * size);
+  const Status played = m_runtime->play();
+  if (!played) Q_EMIT failed(QString::fromStdString(played.error().message));
+  refresh(m_runtime->status());
+}
+
+void PlayController::play() { move(1); }
+void PlayController::backUp() { move(-1); }
+
+void PlayController::pause() {
+  if (m_runtime == nullptr) return;
+  m_runtime->pause();
+  refresh(m_runtime->status());
+}
+
+void PlayController::setSpeed(double factor) {
+  if (!std::isfinite(factor)) return;
+  m_speed = std::clamp(factor, -2.0, 2.0);
+  if (m_runtime != nullptr) m_runtime->setSpeed(m_speed);
+  rebuild();
+}
+
+void PlayController::scrub(double t_s) {
+  if (!m_state.can_scrub || !std::isfinite(t_s)) return;
+  m_cursor = std::clamp(t_s, 0.0, m_state.duration_s);
+  if (m_state.loaded) {
+    const Status scrubbed = m_runtime->scrub(m_cursor);
+    if (!scrubbed) Q_EMIT failed(QString::fromStdString(scrubbed.error().message));
+    refresh(m_runtime->status());
+  } else {
+    rebuild();
+  }
+}
+
+}  // namespace longarm::session

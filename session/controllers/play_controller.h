@@ -1,0 +1,71 @@
+#pragma once
+
+/// @file
+/// PlayController: from a plan on the table to a motion of the arm, by the operator's Play and by nothing else.
+
+#include <QObject>
+#include <QString>
+
+#include "session/controllers/plan_controller.h"
+#include "session/robot/robot_runtime.h"
+
+namespace longarm::session {
+
+/// What the transport shows; a value.
+struct PlayState {
+  bool has_plan = false;                   ///< A plan that worked is on the table.
+  bool loaded = false;                     ///< The robot holds it; before that everything is preview.
+  bool playing = false;                    ///< The arm moves along it, or slows down on it.
+  bool can_play = false, can_back_up = false;
+  bool can_scrub = false;
+  bool stale = false;                      ///< The robot or the feature is not where the plan was made for: plan again.
+  QString why_not_play, why_not_back_up;   ///< Sentences; empty when it can.
+  double cursor_s = 0, duration_s = 0;
+  double speed = 1, rate = 0;
+};
+
+/// GUI thread only.  A plan is only shown until play(): that loads it, which is refused when the robot does not stand
+/// at its start, and then moves.  A new plan, or none, unloads the old one as soon as the arm stands.
+class PlayController final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// Borrowed; outlive this.
+  PlayController(Document& document, PlanController& plans, QObject* parent = nullptr);
+  ~PlayController() override;
+
+  void setRuntime(RobotRuntime* runtime);              ///< Borrowed; null: no robot.
+  const PlayState& state() const { return m_state; }
+  /// Takes in what the runtime says now; call it with every poll.
+  void refresh(const RuntimeStatus& status);
+
+  void play();                                         ///< Forwards at |speed|.
+  void backUp();                                       ///< Backwards at |speed|.
+  void pause();
+  void setSpeed(double factor);                        ///< -2 ... 2; takes effect in motion.
+  void scrub(double t_s);                              ///< Moves the shown cursor, never the robot.
+
+ Q_SIGNALS:
+  void changed();                                      ///< state() differs.
+  void failed(const QString& sentence);
+
+ private:
+  const planning::Plan* plan() const;                  ///< Null unless one that worked is on the table.
+  Status load();
+  void move(double direction);
+  void forgetOtherPlan();
+  QString whyNotMove() const;
+  void rebuild();
+  void checkPlan(PlayState& next) const;
+
+  Document& m_document;
+  PlanController& m_plans;
+  RobotRuntime* m_runtime = nullptr;
+  RuntimeStatus m_status;
+  PlanId m_loaded;                                     // The plan the runtime holds; invalid: none of ours.
+  double m_cursor = 0, m_speed = 1;
+  PlayState m_state;
+  int m_observer = 0;
+};
+
+}  // namespace longarm::session

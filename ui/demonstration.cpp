@@ -1,0 +1,308 @@
+#include "ui/demonstration.h"
+
+#include <utility>
+
+#include <QDir>
+#include <QPushButton>
+#include <QToolButton>
+#include <nlohmann/json.hpp>
+
+#include "planning/world/scenario.h"
+#include "session/controllers/snapshot_maker.h"
+
+namespace longarm::ui {
+
+using session::ToolKind;
+using vision::PaneSide;
+
+namespace {
+
+constexpr double kTruth_s = 3, kAim_s = 20, kPair_s = 15, kPlan_s = 30, kPlay_s = 180, kGrip_s = 15;
+constexpr double kMargin_px = 40;          // So far inside both pictures the pipe's ends must lie.
+constexpr const char* kPipe = "pipe";
+
+Status failed(const QString& sentence) { return {ErrorCode::kNoSolution, sentence.toStdString()}; }
+
+Result<Pose> poseFrom(const nlohmann::json& json) {
+  try {
+    const auto& xyz = json.at("xyz");
+    const auto& q = json.at("quaternion_xyzw");
+    Pose X = Pose::Identity();
+    X.translation() = Eigen::Vector3d(xyz.at(0), xyz.at(1), xyz.at(2));
+    X.linear() = Eigen::Quaterniond(q.at(3), q.at(0), q.at(1), q.at(2)).normalized().toRotationMatrix();
+    return X;
+  } catch (const nlohmann::json::exception& problem) {
+    return {ErrorCode::kInvalidInput, std::string("A pose of the virtual robot: ") + problem.what()};
+  }
+}
+
+QToolButton* buttonOf(QWidget* within, QAction* action) {
+  for (auto* button : within->findChildren<QToolButton*>()) {
+    if (button->defaultAction() == action && button->isVisible()) return button;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Demonstration::Demonstration(MainWindow& window, DemonstrationOptions options)
+    : m_window(window), m_bench(window.bench()), m_options(std::move(options)) {}
+
+Status Demonstration::run() {
+  if (!m_options.folder.isEmpty() && !QDir().mkpath(m_options.folder)) {
+    return failed(QStringLiteral("The folder %1 cannot be made.").arg(m_options.folder));
+  }
+  using Step = Status (Demonstration::*)();
+  for (const Step step : {&Demonstration::waitForLink, &Demonstration::aim, &Demonstration::takePair, &Demonstration::drawLine,
+                          &Demonstration::planGrab, &Demonstration::release, &Demonstration::play, &Demonstration::grip,
+                          &Demonstration::showSizes}) {
+    if (const Status status = (this->*step)(); !status) {
+      (void)shoot("failed");
+      return status;
+    }
+  }
+  return {};
+}
+
+Result<Demonstration::Truth> Demonstration::truth() const {
+  auto* runtime = m_bench.robot().runtime();
+  if (runtime == nullptr) return {ErrorCode::kDisconnected, "No robot is connected."};
+  const auto answer = runtime->callService("/virtual_robot/truth", "{}", kTruth_s);
+  if (!answer) return answer.error();
+  const auto scenario = planning::loadScenario(m_options.scenario.toStdString());
+  if (!scenario) return scenario.error();
+  const auto* pipe = scenario->object(kPipe);
+  const auto* shape = pipe != nullptr ? std::get_if<planning::Cylinder>(&pipe->body.shape) : nullptr;
+  if (shape == nullptr) return {ErrorCode::kNotFound, "The scenario " + scenario->name + " has no pipe to grab."};
+  const auto json = nlohmann::json::parse(*answer, nullptr, false);
+  if (json.is_discarded() || !json.is_object()) return {ErrorCode::kInvalidInput, "The virtual robot's truth is no JSON object."};
+  Truth result;
+  result.held = json.value("held", std::string());
+  for (const auto& object : json.value("objects", nlohmann::json::array())) {
+    if (object.value("name", std::string()) != kPipe) continue;
+    const auto X_WO = poseFrom(object.value("pose", nlohmann::json::object()));
+    if (!X_WO) return X_WO.error();
+    result.ends = {*X_WO * Eigen::Vector3d(0, 0, -shape->length / 2), *X_WO * Eigen::Vector3d(0, 0, shape->length / 2)};
+  }
+  const auto links = json.value("links", nlohmann::json::object());
+  for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+    const auto* camera = runtime->workcell().camera(m_bench.paneCamera(side).toStdString());
+    if (camera == nullptr || !links.contains(camera->link)) {
+      return {ErrorCode::kNotFound, "The virtual robot does not say where camera " + m_bench.paneCamera(side).toStdString() + " is."};
+    }
+    const auto X_WC = poseFrom(links.at(camera->link));
+    if (!X_WC) return X_WC.error();
+    result.X_WC[static_cast<std::size_t>(side)] = *X_WC;
+  }
+  return result;
+}
+
+Result<Eigen::Vector2d> Demonstration::see(PaneSide side, const Truth& truth, const Eigen::Vector3d& p_W) const {
+  const auto view = session::cameraView(m_bench.robot().runtime()->workcell(), m_bench.paneCamera(side).toStdString(),
+                                        *m_bench.robot().runtime()->jointState());
+  if (!view) return view.error();
+  return view->camera.project(truth.X_WC[static_cast<std::size_t>(side)].inverse() * p_W);
+}
+
+Status Demonstration::waitForLink() {
+  if (m_bench.robot().status().mode != session::RobotMode::kVirtual) {
+    return {ErrorCode::kRefused, "A demonstration works the virtual robot only; this one is real."};
+  }
+  const auto up = [this] {
+    return m_bench.robot().linkUp() && !m_bench.live().picture(m_bench.paneCamera(PaneSide::kLeft)).empty() &&
+           !m_bench.live().picture(m_bench.paneCamera(PaneSide::kRight)).empty();
+  };
+  if (!SimulatedHand::waitFor(up, m_options.link_timeout_s)) {
+    return failed(QStringLiteral("No link with live pictures within %1 s: %2").arg(m_options.link_timeout_s)
+                      .arg(QString::fromStdString(m_bench.robot().status().link_text)));
+  }
+  SimulatedHand::pump(400);
+  return shoot("live");
+}
+
+Status Demonstration::aim() {
+  const auto inside = [this](const Eigen::Vector2d& pixel, const vision::CameraModel& camera) {
+    return camera.containsPixel(pixel, -kMargin_px);
+  };
+  const auto aimed = [&](const Truth& now) {
+    for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+      const auto view = m_bench.live().view(m_bench.paneCamera(side));
+      for (const auto& end : now.ends) {
+        const auto pixel = see(side, now, end);
+        if (!view || !pixel || !inside(*pixel, view->camera)) return false;
+      }
+    }
+    return true;
+  };
+  auto now = truth();
+  if (!now) return now.error();
+  auto* canvas = m_window.pictures()->pane(PaneSide::kLeft)->canvas();
+  for (int tries = 0; tries < 8 && !aimed(*now); ++tries) {
+    const auto middle = see(PaneSide::kLeft, *now, (now->ends[0] + now->ends[1]) / 2);
+    if (middle && canvas->pictureSize().width() > 0 && canvas->widgetOfPixel(*middle) &&
+        canvas->rect().contains(canvas->widgetOfPixel(*middle)->toPoint())) {
+      m_hand.doubleClick(canvas, *canvas->widgetOfPixel(*middle));
+    } else {
+      const Eigen::Vector3d p_C = now->X_WC[0].inverse() * Eigen::Vector3d((now->ends[0] + now->ends[1]) / 2);
+      for (int i = 0; i < 3; ++i) m_hand.key(canvas, p_C.x() > 0 ? Qt::Key_Right : Qt::Key_Left, Qt::ShiftModifier);
+      for (int i = 0; i < 2; ++i) m_hand.key(canvas, p_C.y() > 0 ? Qt::Key_Down : Qt::Key_Up, Qt::ShiftModifier);
+    }
+    const auto still = [this] {
+      const auto head = m_bench.robot().runtime()->panTilt(m_bench.aim().panTilt().toStdString());
+      return !head || !head->moving;
+    };
+    SimulatedHand::pump(300);
+    SimulatedHand::waitFor(still, kAim_s);
+    now = truth();
+    if (!now) return now.error();
+  }
+  return aimed(*now) ? Status() : failed(QStringLiteral("The pipe could not be brought into both pictures."));
+}
+
+Status Demonstration::takePair() {
+  auto* button = buttonOf(&m_window, m_window.actions().at(ActionId::kTakePair));
+  if (button == nullptr) return failed(QStringLiteral("There is no button to take a pair."));
+  SimulatedHand::pump(400);
+  m_hand.click(button);
+  const auto taken = [this] { return m_bench.document().paneSnapshot(PaneSide::kLeft) && m_bench.document().paneSnapshot(PaneSide::kRight); };
+  if (!SimulatedHand::waitFor(taken, kPair_s)) return failed(QStringLiteral("No pair was taken: %1").arg(m_window.strip()->message()));
+  return shoot("pair");
+}
+
+Result<Eigen::Vector2d> Demonstration::handle(PaneSide side, int vertex) const {
+  const auto& document = m_bench.document();
+  if (!document.items().empty()) {
+    const auto* pick = document.items().back().pick(document.paneSnapshotId(side), vertex);
+    if (pick != nullptr) return pick->pixel;
+  }
+  // The tool's own copy: dashed markers in vertex order, the active one among them.
+  int index = 0;
+  for (const auto& shape : m_bench.targeting().overlay(side).shapes) {
+    const bool marker = shape.kind == vision::OverlayShape::Kind::kMarker &&
+                        (shape.role == vision::OverlayRole::kUnplaced || shape.role == vision::OverlayRole::kActiveHandle);
+    if (marker && index++ == vertex) return shape.points.front();
+  }
+  return {ErrorCode::kNotFound, "The line tool shows no handle " + std::to_string(vertex + 1) + "."};
+}
+
+Status Demonstration::dragHandle(PaneSide side, int vertex, const Eigen::Vector2d& to) {
+  auto* canvas = m_window.pictures()->pane(side)->canvas();
+  const auto from = handle(side, vertex);
+  if (!from) return from.error();
+  const auto start = canvas->widgetOfPixel(*from), end = canvas->widgetOfPixel(to);
+  if (!start || !end) return failed(QStringLiteral("A handle lies outside the picture shown."));
+  m_hand.drag(canvas, *start, *end);
+  return {};
+}
+
+Status Demonstration::drawLine() {
+  const auto now = truth();
+  if (!now) return now.error();
+  auto* tool = buttonOf(&m_window, m_window.actions().at(ActionId::kToolLine));
+  if (tool == nullptr) return failed(QStringLiteral("There is no button for the line tool."));
+  m_hand.click(tool);
+  if (const Status shown = shoot("line-tool"); !shown) return shown;
+  for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+    for (int vertex = 0; vertex < 2; ++vertex) {
+      const auto to = see(side, *now, now->ends[static_cast<std::size_t>(vertex)]);
+      if (!to) return to.error();
+      if (const Status dragged = dragHandle(side, vertex, *to); !dragged) return dragged;
+    }
+    if (const Status shown = shoot(side == PaneSide::kLeft ? "left-marked" : "both-marked"); !shown) return shown;
+  }
+  const auto* feature = m_bench.document().selectedFeature();
+  if (feature == nullptr) return failed(QStringLiteral("The line is not measured: %1").arg(m_bench.targeting().hint()));
+  return {};
+}
+
+Status Demonstration::planGrab() {
+  auto* button = m_window.macros()->button(QStringLiteral("grab_pipe"));
+  if (button == nullptr) return failed(QStringLiteral("There is no button Grab Pipe."));
+  if (!SimulatedHand::waitFor([button] { return button->isEnabled(); }, kAim_s)) {
+    return failed(QStringLiteral("Grab Pipe is not offered: %1").arg(button->toolTip()));
+  }
+  m_hand.click(button);
+  const auto finished = [this] { return m_bench.document().plan().has_value(); };
+  if (!SimulatedHand::waitFor(finished, kPlan_s)) return failed(QStringLiteral("No plan: %1").arg(m_window.strip()->message()));
+  const auto& plan = m_bench.document().plan()->plan;
+  if (!plan.ok()) return {ErrorCode::kNoSolution, "Grab Pipe was refused: " + plan.reason};
+  return shoot("plan");
+}
+
+Status Demonstration::release() {
+  auto* reset = m_window.stopPanel()->resetButton();
+  const auto free = [this] { return !m_bench.robot().status().gate.stopped; };
+  if (!free() && !m_hand.hold(reset, free, 5)) return failed(QStringLiteral("STOP was not reset: %1").arg(m_window.strip()->message()));
+  auto* open = buttonOf(&m_window, m_window.actions().at(ActionId::kGripperOpen));
+  const auto& gripper = m_bench.robot().runtime()->workcell().gripper;
+  if (open == nullptr || !gripper) return failed(QStringLiteral("There is no gripper to open."));
+  m_hand.click(open);
+  const double wide = gripper->closed + 0.9 * (gripper->open - gripper->closed);
+  const auto opened = [this, &gripper, wide] {
+    const double at = m_bench.robot().runtime()->gripperPosition();
+    return gripper->open > gripper->closed ? at >= wide : at <= wide;
+  };
+  return SimulatedHand::waitFor(opened, kGrip_s) ? Status() : failed(QStringLiteral("The gripper did not open."));
+}
+
+Status Demonstration::play() {
+  auto* button = m_window.motion()->bar()->playButton();
+  if (!SimulatedHand::waitFor([button] { return button->isEnabled(); }, 5)) {
+    return failed(QStringLiteral("Play is not offered: %1").arg(m_bench.play().state().why_not_play));
+  }
+  m_hand.click(button);
+  const auto player = [this] { return m_bench.robot().status().player; };
+  const double half = m_bench.document().plan()->plan.trajectory.duration() / 2;
+  const auto over = [&] { return player() == planning::PlayerState::kDone || player() == planning::PlayerState::kHalted; };
+  const auto midway = [&] { return over() || m_bench.play().state().cursor_s > half; };
+  if (!SimulatedHand::waitFor(midway, kPlay_s)) return failed(QStringLiteral("The arm did not get half way."));
+  if (const Status shown = shoot("playing"); !shown) return shown;
+  if (!SimulatedHand::waitFor(over, kPlay_s) || player() != planning::PlayerState::kDone) {
+    return failed(QStringLiteral("The motion did not end: %1").arg(QString::fromStdString(m_bench.robot().status().notice)));
+  }
+  return {};
+}
+
+Status Demonstration::grip() {
+  auto* close = buttonOf(&m_window, m_window.actions().at(ActionId::kGripperClose));
+  if (close == nullptr) return failed(QStringLiteral("There is no button to close the gripper."));
+  m_hand.click(close);
+  if (!SimulatedHand::waitFor([this] { return m_bench.robot().runtime()->holding(); }, kGrip_s)) {
+    return failed(QStringLiteral("The gripper closed on nothing."));
+  }
+  const auto now = truth();
+  if (!now) return now.error();
+  if (now->held != kPipe) return failed(QStringLiteral("The gripper holds \"%1\", not the pipe.").arg(QString::fromStdString(now->held)));
+  m_hand.click(buttonOf(&m_window, m_window.actions().at(ActionId::kSceneReset)));
+  for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) m_hand.click(m_window.pictures()->pane(side)->liveButton());
+  SimulatedHand::pump(900);
+  return shoot("gripped");
+}
+
+Status Demonstration::showSizes() {
+  if (m_options.folder.isEmpty()) return {};
+  const QSize before = m_window.size();
+  for (const auto& [size, name] : {std::pair{QSize(1280, 800), "small"}, std::pair{QSize(1920, 1080), "large"}}) {
+    if (const Status shown = shootAt(size, name); !shown) return shown;
+  }
+  m_window.resize(before);
+  return {};
+}
+
+Status Demonstration::shootAt(const QSize& size, const char* name) {
+  m_window.resize(size);
+  SimulatedHand::pump(600);
+  return shoot(name);
+}
+
+Status Demonstration::shoot(const char* name) {
+  if (m_options.folder.isEmpty()) return {};
+  m_window.scene()->view()->requestRender();
+  SimulatedHand::pump(350);
+  const QString path = QStringLiteral("%1/%2-%3.png").arg(m_options.folder).arg(m_pictures + 1, 2, 10, QLatin1Char('0')).arg(QString::fromLatin1(name));
+  if (!m_window.grab().save(path)) return failed(QStringLiteral("The picture %1 could not be written.").arg(path));
+  ++m_pictures;
+  return {};
+}
+
+}  // namespace longarm::ui

@@ -1,0 +1,111 @@
+#include "ui/head_panel.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "planning/world/workcell.h"
+
+namespace longarm::ui {
+
+namespace {
+
+constexpr double kDegPerRad = 57.29577951308232;
+
+QToolButton* wideButton(QAction* action, QWidget* parent) {
+  auto* button = new QToolButton(parent);
+  button->setDefaultAction(action);
+  button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  button->setIconSize({20, 20});
+  button->setMinimumHeight(32);
+  button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  button->setFocusPolicy(Qt::TabFocus);
+  return button;
+}
+
+}  // namespace
+
+HeadPanel::HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_actions(actions) {
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(6, 6, 6, 6);
+  row->setSpacing(10);
+  auto* left = new QVBoxLayout;
+  m_stick = new widgets::AimStick(this);
+  left->addWidget(m_stick, 1, Qt::AlignCenter);
+  auto* angles = new QHBoxLayout;
+  angles->setSpacing(4);
+  m_pan = new widgets::ValueLabel(QStringLiteral("\u00b0"), 1, 180, this);
+  m_tilt = new widgets::ValueLabel(QStringLiteral("\u00b0"), 1, 180, this);
+  angles->addWidget(new QLabel(tr("pan"), this));
+  angles->addWidget(m_pan);
+  angles->addSpacing(6);
+  angles->addWidget(new QLabel(tr("tilt"), this));
+  angles->addWidget(m_tilt);
+  left->addLayout(angles);
+  row->addLayout(left);
+  auto* right = new QVBoxLayout;
+  right->setSpacing(5);
+  right->addWidget(wideButton(actions.at(ActionId::kTakePair), this));
+  right->addWidget(wideButton(actions.at(ActionId::kGripperOpen), this));
+  right->addWidget(wideButton(actions.at(ActionId::kGripperClose), this));
+  m_gripper = new QLabel(this);
+  m_gripper->setWordWrap(true);
+  right->addWidget(m_gripper);
+  right->addStretch(1);
+  row->addLayout(right, 1);
+  const auto style = [this, &appearance] { m_stick->setTheme(appearance.theme()); };
+  style();
+  connect(&appearance, &Appearance::changed, this, style);
+  connect(m_stick, &widgets::AimStick::deflected, &m_bench.aim(), &session::AimController::setStick);
+  connect(m_actions.at(ActionId::kTakePair), &QAction::triggered, &m_bench, &Workbench::takePair);
+  bindGripper();
+  connect(&m_bench.robot(), &RobotSession::polled, this, &HeadPanel::refresh);
+  connect(&m_bench.robot(), &RobotSession::linkChanged, this, &HeadPanel::refresh);
+  connect(&m_bench, &Workbench::paneCameraChanged, this, &HeadPanel::refresh);
+  connect(&m_bench.snapshots(), &session::SnapshotController::stateChanged, this, &HeadPanel::refresh);
+  refresh();
+}
+
+void HeadPanel::bindGripper() {
+  const auto move = [this](bool open) {
+    const auto& workcell = m_bench.document().workcell();
+    if (!workcell || !workcell->gripper) return;
+    m_bench.robot().setGripper(open ? workcell->gripper->open : workcell->gripper->closed);
+  };
+  connect(m_actions.at(ActionId::kGripperOpen), &QAction::triggered, this, [move] { move(true); });
+  connect(m_actions.at(ActionId::kGripperClose), &QAction::triggered, this, [move] { move(false); });
+}
+
+void HeadPanel::refresh() {
+  const QString aim = m_bench.aim().whyNot();
+  m_stick->setEnabled(aim.isEmpty() && m_bench.robot().linkUp());
+  m_stick->setToolTip(aim.isEmpty() ? tr("Turns the cameras while it is held. Arrow keys in a live pane do the same.") : aim);
+  auto* runtime = m_bench.robot().runtime();
+  std::optional<double> pan, tilt;
+  if (runtime != nullptr) {
+    const auto angles = runtime->panTilt(m_bench.aim().panTilt().toStdString());
+    if (angles) {
+      pan = angles->pan * kDegPerRad;
+      tilt = angles->tilt * kDegPerRad;
+    }
+  }
+  m_pan->setValue(pan);
+  m_tilt->setValue(tilt);
+  m_actions.setWhyNot(ActionId::kTakePair, m_bench.whyNotTakePair());
+
+  const auto& workcell = m_bench.document().workcell();
+  QString why = m_bench.robot().whyNotReady();
+  if (why.isEmpty() && (!workcell || !workcell->gripper)) why = tr("The workcell has no gripper.");
+  m_actions.setWhyNot(ActionId::kGripperOpen, why);
+  m_actions.setWhyNot(ActionId::kGripperClose, why);
+  if (!why.isEmpty()) {
+    m_gripper->setText(tr("gripper unknown"));
+  } else {
+    const QString opening = QString::number(1000 * runtime->gripperPosition(), 'f', 0);
+    m_gripper->setText(runtime->holding() ? tr("HOLDING (finger at %1 mm)").arg(opening) : tr("finger at %1 mm").arg(opening));
+  }
+}
+
+}  // namespace longarm::ui

@@ -1,0 +1,100 @@
+#pragma once
+
+/// @file
+/// MainWindow: puts the panels together; nothing else.
+
+#include <memory>
+
+#include <QMainWindow>
+#include <QSettings>
+
+#include "ui/actions.h"
+#include "ui/cameras_panel.h"
+#include "ui/feature_panel.h"
+#include "ui/file_actions.h"
+#include "ui/head_panel.h"
+#include "ui/macro_panel.h"
+#include "ui/motion_panel.h"
+#include "ui/notice_bar.h"
+#include "ui/pictures_area.h"
+#include "ui/scene_panel.h"
+#include "ui/sketch_actions.h"
+#include "ui/status_strip.h"
+#include "ui/stop_keys.h"
+#include "ui/stop_panel.h"
+#include "ui/window_layout.h"
+#include "ui/workbench.h"
+#include "widgets/mode_frame.h"
+
+namespace longarm::ui {
+
+/// Everything is borrowed and outlives the window.  GUI thread only.
+class MainWindow final : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  MainWindow(Workbench& bench, Appearance& appearance, QSettings& settings, QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  Actions& actions() { return *m_actions; }
+  Workbench& bench() { return m_bench; }
+  PicturesArea* pictures() const { return m_pictures; }
+  ScenePanel* scene() const { return m_scene; }
+  FeaturePanel* features() const { return m_features; }
+  MacroPanel* macros() const { return m_macros; }
+  HeadPanel* head() const { return m_head; }
+  MotionPanel* motion() const { return m_motion; }
+  StopPanel* stopPanel() const { return m_stop; }
+  CamerasPanel* cameras() const { return m_cameras; }
+  StatusStrip* strip() const { return m_strip; }
+  NoticeBar* notices() const { return m_notices; }
+  FileActions* files() const { return m_files; }
+  WindowLayout& layout() { return *m_layout; }
+
+  /// Asks, beside everything else, whether to take back the sketch of a run that ended badly.
+  void offerRecovery();
+  /// The window is not to write its layout and sketch when it closes.
+  void setRemembering(bool on) { m_remembering = on; }
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  void makePanels();
+  void assemble();
+  void addDock(const QString& name, const QString& title, QWidget* panel, Qt::DockWidgetArea area);
+  QWidget* makeBottomBar();
+  void makeMenus();
+  void connectPanels();
+  void bindWindowActions();
+  void applyTheme();
+  void showMode();
+  void showTitle();
+  void showPlanNotice();
+  void showLinkNotice();
+  void showAbout();
+
+  Workbench& m_bench;
+  Appearance& m_appearance;
+  QSettings& m_settings;
+  Actions* m_actions;
+  StopKeys* m_stop_keys;
+  FileActions* m_files;
+  widgets::ModeFrame* m_frame;
+  QMainWindow* m_docks;
+  QSplitter* m_middle;
+  PicturesArea* m_pictures;
+  ScenePanel* m_scene;
+  FeaturePanel* m_features;
+  MacroPanel* m_macros;
+  HeadPanel* m_head;
+  MotionPanel* m_motion;
+  StopPanel* m_stop;
+  CamerasPanel* m_cameras;
+  StatusStrip* m_strip;
+  NoticeBar* m_notices;
+  std::unique_ptr<WindowLayout> m_layout;
+  bool m_remembering = true;
+};
+
+}  // namespace longarm::ui

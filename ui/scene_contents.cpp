@@ -1,0 +1,143 @@
+#include "ui/scene_contents.h"
+
+#include <utility>
+
+namespace longarm::ui {
+
+namespace {
+
+constexpr double kGhost = 0.35;
+constexpr double kAroundSelection_m = 0.25;
+
+const Eigen::Vector3d kLeftColor{0.95, 0.75, 0.2}, kRightColor{0.3, 0.75, 0.95};
+
+}  // namespace
+
+SceneContents::SceneContents(vtkRenderer* renderer) : m_renderer(renderer) {
+  m_grid.update(3, 0.25);
+  m_axes.update(Pose::Identity(), 0.25);
+  m_grid.addTo(renderer);
+  m_axes.addTo(renderer);
+  m_sketch.addTo(renderer);
+  for (auto& frustum : m_frustums) frustum.addTo(renderer);
+  setOpacity(m_opacity);
+}
+
+SceneContents::~SceneContents() = default;
+
+void SceneContents::setWorkcell(std::shared_ptr<const planning::Workcell> workcell) {
+  m_robot.reset();
+  m_plan.reset();
+  m_world.reset();
+  m_workcell = std::move(workcell);
+  if (!m_workcell || !m_workcell->model) return;
+  m_robot = std::make_unique<scene::RobotRep>(m_workcell->model);
+  m_robot->addTo(m_renderer);
+  m_plan = std::make_unique<scene::PlanRep>(m_workcell->model, m_workcell->arm.tip_link);
+  m_plan->addTo(m_renderer);
+  m_world = std::make_unique<scene::WorldRep>();
+  m_world->addTo(m_renderer);
+  setJoints(nullptr);
+}
+
+void SceneContents::setJoints(const JointState* joints) {
+  if (!m_robot) return;
+  const auto& model = *m_workcell->model;
+  Eigen::VectorXd q = model.neutral();
+  if (joints != nullptr) model.assign(*joints, q);
+  std::vector<Pose> X_WL;
+  model.forward(q, X_WL);
+  m_robot->update(X_WL);
+  if (const bool ghost = joints == nullptr; ghost != m_ghost) {
+    m_ghost = ghost;
+    scene::RobotLook look;
+    look.opacity = ghost ? kGhost : 1;
+    m_robot->setLook(look);
+  }
+  std::map<std::string, Pose> poses;
+  for (std::size_t i = 0; i < model.links().size(); ++i) poses[model.links()[i].name] = X_WL[i];
+  m_world->update(m_workcell->objects, poses);
+}
+
+void SceneContents::setSketch(const session::Document& document) {
+  std::vector<scene::SketchItem> items;
+  for (const auto& item : document.items()) {
+    const auto& measured = document.measurement(item.id).feature;
+    if (!measured) continue;
+    scene::SketchItem drawn;
+    drawn.feature = *measured;
+    drawn.selected = document.selection().contains(item.id);
+    drawn.visible = !item.hidden;
+    items.push_back(std::move(drawn));
+  }
+  m_sketch.update(items);
+}
+
+void SceneContents::setPlan(const session::Document& document) {
+  if (!m_plan) return;
+  if (document.plan()) {
+    m_plan->update(document.plan()->plan);
+  } else {
+    m_plan->clear();
+  }
+}
+
+void SceneContents::setCursor(double t_s) {
+  if (m_plan) m_plan->scrub(t_s);
+}
+
+void SceneContents::setPicture(vision::PaneSide side, const std::optional<vision::View>& view, const cv::Mat& picture) {
+  auto& frustum = m_frustums[static_cast<std::size_t>(side)];
+  frustum.setVisible(view.has_value());
+  if (view) frustum.update(*view, picture);
+}
+
+void SceneContents::setOpacity(double opacity) {
+  m_opacity = opacity;
+  for (std::size_t i = 0; i < m_frustums.size(); ++i) {
+    scene::FrustumLook look;
+    look.opacity = opacity;
+    look.color = i == 0 ? kLeftColor : kRightColor;
+    m_frustums[i].setLook(look);
+  }
+}
+
+Eigen::AlignedBox3d SceneContents::everything() const {
+  Eigen::AlignedBox3d box;
+  const auto add = [&box](const scene::Representation& part) {
+    const auto around = part.bounds();
+    if (!around.isEmpty()) box.extend(around);
+  };
+  if (m_robot) add(*m_robot);
+  if (m_world) add(*m_world);
+  if (m_plan) add(*m_plan);
+  add(m_sketch);
+  for (const auto& frustum : m_frustums) add(frustum);
+  return box;
+}
+
+Eigen::AlignedBox3d SceneContents::selection(const session::Document& document) const {
+  Eigen::AlignedBox3d box;
+  for (const auto id : document.selection().items) {
+    const auto& measured = document.measurement(id).feature;
+    if (!measured) continue;
+    for (const auto& vertex : measured->vertices) box.extend(vertex.xyz);
+  }
+  if (box.isEmpty()) return box;
+  return {box.min().array() - kAroundSelection_m, box.max().array() + kAroundSelection_m};
+}
+
+std::vector<widgets::Pickable> SceneContents::pickables(const session::Document& document) const {
+  std::vector<widgets::Pickable> found;
+  for (const auto& item : document.items()) {
+    const auto& measured = document.measurement(item.id).feature;
+    if (!measured || item.hidden) continue;
+    widgets::Pickable pickable;
+    pickable.id = item.id.value;
+    for (const auto& vertex : measured->vertices) pickable.points.push_back(vertex.xyz);
+    found.push_back(std::move(pickable));
+  }
+  return found;
+}
+
+}  // namespace longarm::ui

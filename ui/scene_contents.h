@@ -1,0 +1,59 @@
+#pragma once
+
+/// @file
+/// SceneContents: what stands in the 3-D scene, kept in step with document and robot.
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include <opencv2/core/mat.hpp>
+
+#include "session/document/document.h"
+#include "widgets/scene/frustum_rep.h"
+#include "widgets/scene/ground_grid_rep.h"
+#include "widgets/scene/plan_rep.h"
+#include "widgets/scene/robot_rep.h"
+#include "widgets/scene/sketch_rep.h"
+#include "widgets/scene/world_rep.h"
+#include "widgets/scene_view.h"
+
+namespace longarm::ui {
+
+/// One representation per kind of thing.  Nothing renders by itself: call SceneView::requestRender() afterwards.
+/// GUI thread only.
+class SceneContents final {
+ public:
+  explicit SceneContents(vtkRenderer* renderer);
+  ~SceneContents();
+
+  /// Builds robot, plan and fixed objects; null takes them away.
+  void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
+  /// Measured joints; null: unknown, the robot is then drawn as a ghost.
+  void setJoints(const JointState* joints);
+  void setSketch(const session::Document& document);
+  void setPlan(const session::Document& document);
+  void setCursor(double t_s);
+  void setPicture(vision::PaneSide side, const std::optional<vision::View>& view, const cv::Mat& picture);
+  void setOpacity(double opacity);
+
+  Eigen::AlignedBox3d everything() const;
+  /// Around the selected features, a hand wider; empty when nothing measured is selected.
+  Eigen::AlignedBox3d selection(const session::Document& document) const;
+  std::vector<widgets::Pickable> pickables(const session::Document& document) const;
+
+ private:
+  vtkRenderer* m_renderer;
+  std::shared_ptr<const planning::Workcell> m_workcell;
+  std::unique_ptr<scene::RobotRep> m_robot;
+  std::unique_ptr<scene::PlanRep> m_plan;
+  std::unique_ptr<scene::WorldRep> m_world;
+  scene::GroundGridRep m_grid;
+  scene::AxesRep m_axes;
+  scene::SketchRep m_sketch;
+  std::array<scene::FrustumRep, 2> m_frustums;
+  double m_opacity = 0.8;
+  bool m_ghost = false;
+};
+
+}  // namespace longarm::ui

@@ -1,0 +1,88 @@
+#include "ui/sketch_actions.h"
+
+#include <QActionGroup>
+
+namespace longarm::ui {
+
+using session::TargetingController;
+using session::ToolKind;
+
+SketchActions::SketchActions(TargetingController& targeting, Actions& actions, QObject* parent)
+    : QObject(parent), m_targeting(targeting), m_actions(actions) {
+  bind();
+  connect(&m_targeting, &TargetingController::historyChanged, this, &SketchActions::refreshHistory);
+  connect(&m_targeting, &TargetingController::overlayChanged, this, &SketchActions::refreshHistory);
+  connect(&m_targeting, &TargetingController::featuresChanged, this, &SketchActions::refreshSelection);
+  connect(&m_targeting, &TargetingController::panesChanged, this, &SketchActions::refreshTools);
+  connect(&m_targeting, &TargetingController::toolChanged, this, &SketchActions::refreshTools);
+  refreshHistory();
+  refreshSelection();
+  refreshTools();
+}
+
+void SketchActions::bind() {
+  const auto on = [this](ActionId id, const std::function<void()>& act) {
+    connect(m_actions.at(id), &QAction::triggered, this, [act] { act(); });
+  };
+  on(ActionId::kUndo, [this] { m_targeting.undo(); });
+  on(ActionId::kRedo, [this] { m_targeting.redo(); });
+  // Both go to the tool first: it may be drawing.
+  on(ActionId::kDelete, [this] { if (!m_targeting.key(vision::SketchKey::kDelete)) m_targeting.removeSelected(); });
+  on(ActionId::kCancel, [this] { if (!m_targeting.key(vision::SketchKey::kEscape)) m_targeting.select(FeatureId{}); });
+  on(ActionId::kSelectAll, [this] { selectAll(); });
+  on(ActionId::kDuplicate, [this] { m_targeting.duplicate(m_targeting.document().selection().primary); });
+  on(ActionId::kHide, [this] {
+    const auto* item = m_targeting.document().item(m_targeting.document().selection().primary);
+    if (item != nullptr) toggle(&TargetingController::setHidden, item->hidden);
+  });
+  on(ActionId::kLock, [this] {
+    const auto* item = m_targeting.document().item(m_targeting.document().selection().primary);
+    if (item != nullptr) toggle(&TargetingController::setLocked, item->locked);
+  });
+  auto* group = new QActionGroup(this);
+  for (const auto& [id, kind] : {std::pair{ActionId::kToolSelect, ToolKind::kSelect}, std::pair{ActionId::kToolPoint, ToolKind::kPoint},
+                                 std::pair{ActionId::kToolLine, ToolKind::kLine}}) {
+    group->addAction(m_actions.at(id));
+    on(id, [this, tool = kind] { m_targeting.setTool(tool); });
+  }
+}
+
+void SketchActions::toggle(void (TargetingController::*set)(FeatureId, bool), bool now) {
+  const auto items = m_targeting.document().selection().items;
+  for (const auto id : items) (m_targeting.*set)(id, !now);
+}
+
+void SketchActions::selectAll() {
+  session::Selection all;
+  for (const auto& item : m_targeting.document().items()) all.items.insert(item.id);
+  if (!m_targeting.document().items().empty()) all.primary = m_targeting.document().items().back().id;
+  m_targeting.select(all);
+}
+
+void SketchActions::refreshHistory() {
+  const bool undo = m_targeting.canUndo(), redo = m_targeting.canRedo();
+  m_actions.setWhyNot(ActionId::kUndo, undo ? QString() : tr("Nothing has been edited."));
+  m_actions.setWhyNot(ActionId::kRedo, redo ? QString() : tr("Nothing was taken back."));
+  m_actions.setText(ActionId::kUndo, undo ? tr("Undo %1").arg(m_targeting.undoLabel()) : tr("Undo"));
+  m_actions.setText(ActionId::kRedo, redo ? tr("Redo %1").arg(m_targeting.redoLabel()) : tr("Redo"));
+}
+
+void SketchActions::refreshSelection() {
+  const bool any = m_targeting.document().selection().primary.valid();
+  const QString why = any ? QString() : tr("Select a feature first.");
+  for (const auto id : {ActionId::kRename, ActionId::kDuplicate, ActionId::kHide, ActionId::kLock}) m_actions.setWhyNot(id, why);
+  const bool items = !m_targeting.document().items().empty();
+  m_actions.setWhyNot(ActionId::kSelectAll, items ? QString() : tr("There is no feature."));
+  m_actions.setWhyNot(ActionId::kDelete, any || m_targeting.tool() != ToolKind::kSelect ? QString() : why);
+}
+
+void SketchActions::refreshTools() {
+  for (const auto& [id, kind] : {std::pair{ActionId::kToolSelect, ToolKind::kSelect}, std::pair{ActionId::kToolPoint, ToolKind::kPoint},
+                                 std::pair{ActionId::kToolLine, ToolKind::kLine}}) {
+    m_actions.setWhyNot(id, m_targeting.whyNotTool(kind));
+    m_actions.at(id)->setChecked(m_targeting.tool() == kind);
+  }
+  refreshSelection();
+}
+
+}  // namespace longarm::ui

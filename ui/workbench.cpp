@@ -1,0 +1,132 @@
+#include "ui/workbench.h"
+
+#include <utility>
+
+#include "planning/world/workcell.h"
+
+namespace longarm::ui {
+
+using vision::PaneSide;
+
+Workbench::Workbench(const QString& autosave_folder, QObject* parent)
+    : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
+      m_targeting(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
+      m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder) {
+  connectParts();
+}
+
+Workbench::~Workbench() = default;
+
+void Workbench::connectParts() {
+  connect(&m_robot, &RobotSession::attached, this, [this] {
+    session::RobotRuntime* runtime = m_robot.runtime();
+    m_snapshots.setFeed(m_robot.feed());
+    m_aim.setFeed(m_robot.feed());
+    m_plans.setJointSource([runtime] { return runtime->jointState(); });
+    m_play.setRuntime(runtime);
+  });
+  connect(&m_robot, &RobotSession::polled, this, [this] { m_play.refresh(m_robot.status()); });
+  connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
+  connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
+  connect(&m_plans, &session::PlanController::failed, this, &Workbench::said);
+  connect(&m_play, &session::PlayController::failed, this, &Workbench::said);
+  connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
+  connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
+}
+
+void Workbench::openRobot(const RobotChoice& choice) {
+  using WorkcellPtr = std::shared_ptr<const planning::Workcell>;
+  m_jobs.run<WorkcellPtr>(
+      this,
+      [choice]() -> Result<WorkcellPtr> {
+        auto workcell = choice.workcell.isEmpty() ? planning::loadBuiltInWorkcell(choice.variant.toStdString())
+                                                  : planning::loadWorkcell(choice.workcell.toStdString());
+        if (!workcell) return workcell.error();
+        return std::make_shared<const planning::Workcell>(std::move(*workcell));
+      },
+      [this, choice](Result<WorkcellPtr> workcell) {
+        if (!workcell) {
+          m_robot.giveUp(QString::fromStdString(workcell.error().message));
+          return;
+        }
+        setWorkcell(*workcell);
+        session::RuntimeOptions options;
+        options.mode = (*workcell)->backend.is_virtual ? session::RobotMode::kVirtual : session::RobotMode::kLive;
+        options.scenario = choice.scenario.toStdString();
+        options.variant = choice.variant.toStdString();
+        m_robot.start(*workcell, options);
+      });
+}
+
+void Workbench::setWorkcell(std::shared_ptr<const planning::Workcell> workcell) {
+  m_document.setWorkcell(workcell);
+  m_aim.setWorkcell(std::move(workcell));
+  chooseCameras();
+  for (const auto& warning : m_document.workcell()->warnings) say(QString::fromStdString(warning));
+}
+
+void Workbench::chooseCameras() {
+  const auto& cameras = m_document.workcell()->cameras;
+  QString left, right;
+  for (const auto& camera : cameras) {
+    if (camera.role == "stereo_left" && !camera.stereo_partner.empty()) {
+      left = QString::fromStdString(camera.name);
+      right = QString::fromStdString(camera.stereo_partner);
+    }
+  }
+  for (std::size_t i = 0; left.isEmpty() && i + 1 < cameras.size(); ++i) {
+    if (cameras[i].role != "ptz" || cameras[i + 1].role != "ptz") continue;
+    left = QString::fromStdString(cameras[i].name);
+    right = QString::fromStdString(cameras[i + 1].name);
+  }
+  if (left.isEmpty() && cameras.size() >= 2) {
+    left = QString::fromStdString(cameras[0].name);
+    right = QString::fromStdString(cameras[1].name);
+  }
+  setPaneCamera(PaneSide::kLeft, left);
+  setPaneCamera(PaneSide::kRight, right);
+}
+
+void Workbench::setPaneCamera(PaneSide side, const QString& camera) {
+  if (m_pane_cameras[static_cast<int>(side)] == camera) return;
+  m_pane_cameras[static_cast<int>(side)] = camera;
+  Q_EMIT paneCameraChanged(side);
+}
+
+QString Workbench::whyNotTakePair() const {
+  if (const QString why = m_robot.whyNotReady(); !why.isEmpty()) return why;
+  if (const QString why = m_snapshots.whyNot(); !why.isEmpty()) return why;
+  const QString& left = m_pane_cameras[0];
+  const QString& right = m_pane_cameras[1];
+  if (left.isEmpty() || right.isEmpty()) return tr("The workcell has fewer than two cameras.");
+  if (left == right) return tr("Both panes are set to camera %1: choose two cameras.").arg(left);
+  return {};
+}
+
+void Workbench::takePair() {
+  if (const QString why = whyNotTakePair(); !why.isEmpty()) return say(why);
+  m_snapshots.takePair(m_pane_cameras[0], m_pane_cameras[1]);
+}
+
+QString Workbench::whyNotPlan() const {
+  if (m_robot.status().moving) return tr("The arm is moving: pause or stop it first.");
+  return m_robot.whyNotReady();
+}
+
+void Workbench::plan(const QString& macro) {
+  if (const QString why = whyNotPlan(); !why.isEmpty()) return say(why);
+  const Status started = m_plans.plan(macro);
+  if (!started) say(QString::fromStdString(started.error().message));
+}
+
+void Workbench::replan() {
+  if (const QString why = whyNotPlan(); !why.isEmpty()) return say(why);
+  const Status started = m_plans.replan();
+  if (!started) say(QString::fromStdString(started.error().message));
+}
+
+void Workbench::say(const QString& sentence) {
+  if (!sentence.isEmpty()) Q_EMIT said(sentence);
+}
+
+}  // namespace longarm::ui

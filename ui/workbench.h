@@ -1,0 +1,90 @@
+#pragma once
+
+/// @file
+/// Workbench: everything of a session that is not a widget, built in one place and wired together.
+
+#include <array>
+#include <memory>
+
+#include <QObject>
+#include <QString>
+
+#include "session/controllers/aim_controller.h"
+#include "session/controllers/autosave.h"
+#include "session/controllers/plan_controller.h"
+#include "session/controllers/play_controller.h"
+#include "session/controllers/snapshot_controller.h"
+#include "session/controllers/targeting_controller.h"
+#include "ui/live_pictures.h"
+#include "ui/robot_session.h"
+
+namespace longarm::ui {
+
+/// Where the robot comes from.
+struct RobotChoice {
+  QString workcell;                        ///< File; empty: the built-in robot.
+  QString variant;                         ///< Of the built-in robot: empty or "ptz".
+  QString scenario = QStringLiteral("grab_pipe");
+};
+
+/// Panels get a reference to this and bind the parts they need; they never know each other.  GUI thread only.
+class Workbench final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// @param autosave_folder Empty: the program's own.
+  explicit Workbench(const QString& autosave_folder = {}, QObject* parent = nullptr);
+  ~Workbench() override;
+
+  session::Document& document() { return m_document; }
+  session::EditHistory& history() { return m_history; }
+  session::JobRunner& jobs() { return m_jobs; }
+  RobotSession& robot() { return m_robot; }
+  LivePictures& live() { return m_live; }
+  session::TargetingController& targeting() { return m_targeting; }
+  session::SnapshotController& snapshots() { return m_snapshots; }
+  session::PlanController& plans() { return m_plans; }
+  session::PlayController& play() { return m_play; }
+  session::AimController& aim() { return m_aim; }
+  session::Autosave& autosave() { return m_autosave; }
+
+  /// Reads the workcell and starts its robot, both off the GUI thread.
+  void openRobot(const RobotChoice& choice);
+  void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
+
+  /// The camera a pane shows when it is live, and that takePair() takes for it; the stereo head's at first.
+  QString paneCamera(vision::PaneSide side) const { return m_pane_cameras[static_cast<int>(side)]; }
+  void setPaneCamera(vision::PaneSide side, const QString& camera);
+  QString whyNotTakePair() const;
+  void takePair();
+
+  /// Why no motion can be planned now beyond what the controller knows; empty: it can.
+  QString whyNotPlan() const;
+  void plan(const QString& macro);
+  void replan();
+  /// A sentence for the operator.
+  void say(const QString& sentence);
+
+ Q_SIGNALS:
+  void said(const QString& sentence);
+  void paneCameraChanged(longarm::vision::PaneSide side);
+
+ private:
+  void connectParts();
+  void chooseCameras();
+
+  session::Document m_document;
+  session::EditHistory m_history;
+  session::JobRunner m_jobs;
+  RobotSession m_robot;
+  LivePictures m_live;
+  session::TargetingController m_targeting;
+  session::SnapshotController m_snapshots;
+  session::PlanController m_plans;
+  session::PlayController m_play;
+  session::AimController m_aim;
+  session::Autosave m_autosave;
+  std::array<QString, 2> m_pane_cameras;
+};
+
+}  // namespace longarm::ui
