@@ -35,7 +35,7 @@ CamerasPanel::CamerasPanel(Workbench& bench, Appearance& appearance, QWidget* pa
   connect(&m_bench.live(), &LivePictures::thumbnailArrived, this, [this](const QString& camera) {
     if (auto* tile = m_strip->tile(camera)) tile->setPicture(m_bench.live().thumbnail(camera));
   });
-  connect(&m_bench.robot(), &RobotSession::polled, this, &CamerasPanel::refreshAges);
+  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &CamerasPanel::refreshAges);
   m_observer = m_bench.document().observe([this](const session::Change& change) {
     if (change.kind == session::ChangeKind::kWorkcellChanged) rebuild();
   });

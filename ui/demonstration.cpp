@@ -162,10 +162,15 @@ Status Demonstration::aim() {
 Status Demonstration::takePair() {
   auto* button = buttonOf(&m_window, m_window.actions().at(ActionId::kTakePair));
   if (button == nullptr) return failed(QStringLiteral("There is no button to take a pair."));
-  SimulatedHand::pump(400);
-  m_hand.click(button);
   const auto taken = [this] { return m_bench.document().paneSnapshot(PaneSide::kLeft) && m_bench.document().paneSnapshot(PaneSide::kRight); };
-  if (!SimulatedHand::waitFor(taken, kPair_s)) return failed(QStringLiteral("No pair was taken: %1").arg(m_window.strip()->message()));
+  const auto answered = [&] { return taken() || m_bench.snapshots().state() == session::SnapshotController::State::kIdle; };
+  // An operator whose pair was refused presses again.
+  for (int tries = 0; tries < 4 && !taken(); ++tries) {
+    SimulatedHand::pump(400);
+    m_hand.click(button);
+    SimulatedHand::waitFor(answered, kPair_s);
+  }
+  if (!taken()) return failed(QStringLiteral("No pair was taken: %1").arg(m_window.strip()->message()));
   return shoot("pair");
 }
 

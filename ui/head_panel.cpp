@@ -61,7 +61,7 @@ HeadPanel::HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance,
   connect(m_stick, &widgets::AimStick::deflected, &m_bench.aim(), &session::AimController::setStick);
   connect(m_actions.at(ActionId::kTakePair), &QAction::triggered, &m_bench, &Workbench::takePair);
   bindGripper();
-  connect(&m_bench.robot(), &RobotSession::polled, this, &HeadPanel::refresh);
+  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &HeadPanel::refresh);
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, &HeadPanel::refresh);
   connect(&m_bench, &Workbench::paneCameraChanged, this, &HeadPanel::refresh);
   connect(&m_bench.snapshots(), &session::SnapshotController::stateChanged, this, &HeadPanel::refresh);

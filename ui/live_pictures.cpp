@@ -1,5 +1,7 @@
 #include "ui/live_pictures.h"
 
+#include <utility>
+
 #include <opencv2/imgproc.hpp>
 
 #include "session/controllers/snapshot_maker.h"
@@ -25,6 +27,9 @@ QImage thumbnailOf(const cv::Mat& picture) {
 LivePictures::LivePictures(RobotSession& robot, session::JobRunner& jobs, QObject* parent)
     : QObject(parent), m_robot(robot), m_jobs(jobs) {
   connect(&m_robot, &RobotSession::frameArrived, this, &LivePictures::onFrame);
+  connect(&m_robot, &RobotSession::polled, this, [this] {
+    if (++m_polls % 2 == 0) announce();
+  });
 }
 
 void LivePictures::setShown(vision::PaneSide side, const QString& camera) { m_shown[static_cast<int>(side)] = camera; }
@@ -97,11 +102,18 @@ void LivePictures::take(const QString& camera, const hardware::Frame& frame, con
       if (view) entry.view = std::move(*view);
     }
   }
-  Q_EMIT pictureArrived(camera);
+  entry.new_picture = true;
   if (decoded.thumbnail.isNull()) return;
   entry.thumbnail = decoded.thumbnail;
   entry.thumbnail_s = frame.stamp_s;
-  Q_EMIT thumbnailArrived(camera);
+  entry.new_thumbnail = true;
+}
+
+void LivePictures::announce() {
+  for (auto& [camera, entry] : m_entries) {
+    if (std::exchange(entry.new_picture, false)) Q_EMIT pictureArrived(camera);
+    if (std::exchange(entry.new_thumbnail, false)) Q_EMIT thumbnailArrived(camera);
+  }
 }
 
 }  // namespace longarm::ui

@@ -18,6 +18,7 @@
 
 namespace longarm::ui {
 
+/// Pictures are announced together, at most 15 times a second: each repaint makes the whole window be composed anew.
 /// Cameras that a pane shows are decoded with every frame, the others four times a second for their thumbnails.
 /// GUI thread only.
 class LivePictures final : public QObject {
@@ -45,6 +46,7 @@ class LivePictures final : public QObject {
     cv::Mat picture;
     QImage thumbnail;
     std::optional<vision::View> view;
+    bool new_picture = false, new_thumbnail = false;
     std::uint64_t sequence = 0;
     double decoded_s = -1e9, thumbnail_s = -1e9;
     bool decoding = false;
@@ -55,6 +57,7 @@ class LivePictures final : public QObject {
   };
   bool isShown(const QString& camera) const;
   void onFrame(const QString& camera);
+  void announce();
   void decode(const QString& camera, std::shared_ptr<const hardware::Frame> frame);
   void take(const QString& camera, const hardware::Frame& frame, const Decoded& decoded);
 
@@ -62,6 +65,7 @@ class LivePictures final : public QObject {
   session::JobRunner& m_jobs;
   std::array<QString, 2> m_shown;
   std::map<QString, Entry> m_entries;
+  unsigned m_polls = 0;
 };
 
 }  // namespace longarm::ui

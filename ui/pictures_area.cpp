@@ -74,7 +74,8 @@ void PicturesArea::toggleMaximised(bool on) {
 
 void PicturesArea::refreshLine() {
   const auto measure = m_bench.targeting().liveMeasure();
-  const QString numbers = measure ? QString::fromStdString(measure->text()) : QString();
+  // Before there are numbers the hint says what to do, and needs the room.
+  const QString numbers = measure && measure->xyz ? QString::fromStdString(measure->text()) : QString();
   m_numbers->setVisible(!numbers.isEmpty());
   m_numbers->setFullText(numbers);
   m_hint->setFullText(m_bench.targeting().hint());

@@ -59,7 +59,11 @@ void RobotSession::attach(std::shared_ptr<session::RobotRuntime> runtime) {
   connect(link, &session::RobotLink::linkChanged, this, [this, follow] { follow(); Q_EMIT linkChanged(); });
   connect(link, &session::RobotLink::stopChanged, this, [this, follow] { follow(); Q_EMIT stopChanged(); });
   connect(link, &session::RobotLink::playerChanged, this, [this, follow] { follow(); Q_EMIT playerChanged(); });
-  connect(link, &session::RobotLink::polled, this, [this, follow] { follow(); Q_EMIT polled(); });
+  connect(link, &session::RobotLink::polled, this, [this, follow] {
+    follow();
+    Q_EMIT polled();
+    if (++m_polls % 3 == 0) Q_EMIT polledSlowly();
+  });
   connect(link, &session::RobotLink::jointStateChanged, this, &RobotSession::jointStateChanged);
   connect(link, &session::RobotLink::frameArrived, this, &RobotSession::frameArrived);
   connect(link, &session::RobotLink::noticed, this, &RobotSession::noticed);

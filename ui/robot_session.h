@@ -47,7 +47,8 @@ class RobotSession final : public QObject {
 
  Q_SIGNALS:
   void attached();                                 ///< runtime() and feed() are there.
-  void polled();
+  void polled();                                   ///< 30 times a second.
+  void polledSlowly();                             ///< 10 times a second: ages and other numbers to read.
   void linkChanged();
   void playerChanged();
   void stopChanged();
@@ -64,6 +65,7 @@ class RobotSession final : public QObject {
   session::RuntimeOptions m_options;
   session::RuntimeStatus m_status;
   bool m_starting = false, m_restarting = false;
+  unsigned m_polls = 0;
   std::shared_ptr<session::RobotRuntime> m_runtime;
   std::unique_ptr<session::RuntimeFeed> m_feed;
   std::unique_ptr<session::RobotLink> m_link;      // Last: it polls the runtime.

@@ -7,6 +7,7 @@ namespace longarm::ui {
 namespace {
 
 constexpr double kGhost = 0.35;
+constexpr double kVisible = 5e-4;          // Smaller joint changes are encoder noise [rad or m].
 constexpr double kAroundSelection_m = 0.25;
 
 const Eigen::Vector3d kLeftColor{0.95, 0.75, 0.2}, kRightColor{0.3, 0.75, 0.95};
@@ -30,6 +31,8 @@ void SceneContents::setWorkcell(std::shared_ptr<const planning::Workcell> workce
   m_plan.reset();
   m_world.reset();
   m_workcell = std::move(workcell);
+  m_drawn.resize(0);
+  m_ghost = false;
   if (!m_workcell || !m_workcell->model) return;
   m_robot = std::make_unique<scene::RobotRep>(m_workcell->model);
   m_robot->addTo(m_renderer);
@@ -40,15 +43,19 @@ void SceneContents::setWorkcell(std::shared_ptr<const planning::Workcell> workce
   setJoints(nullptr);
 }
 
-void SceneContents::setJoints(const JointState* joints) {
-  if (!m_robot) return;
+bool SceneContents::setJoints(const JointState* joints) {
+  if (!m_robot) return false;
   const auto& model = *m_workcell->model;
   Eigen::VectorXd q = model.neutral();
   if (joints != nullptr) model.assign(*joints, q);
+  const bool ghost = joints == nullptr;
+  const bool same = m_drawn.size() == q.size() && (q - m_drawn).cwiseAbs().maxCoeff() < kVisible;
+  if (same && ghost == m_ghost) return false;
+  m_drawn = q;
   std::vector<Pose> X_WL;
   model.forward(q, X_WL);
   m_robot->update(X_WL);
-  if (const bool ghost = joints == nullptr; ghost != m_ghost) {
+  if (ghost != m_ghost) {
     m_ghost = ghost;
     scene::RobotLook look;
     look.opacity = ghost ? kGhost : 1;
@@ -57,6 +64,7 @@ void SceneContents::setJoints(const JointState* joints) {
   std::map<std::string, Pose> poses;
   for (std::size_t i = 0; i < model.links().size(); ++i) poses[model.links()[i].name] = X_WL[i];
   m_world->update(m_workcell->objects, poses);
+  return true;
 }
 
 void SceneContents::setSketch(const session::Document& document) {

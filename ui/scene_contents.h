@@ -30,7 +30,8 @@ class SceneContents final {
   /// Builds robot, plan and fixed objects; null takes them away.
   void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
   /// Measured joints; null: unknown, the robot is then drawn as a ghost.
-  void setJoints(const JointState* joints);
+  /// @returns whether the robot looks any different.
+  bool setJoints(const JointState* joints);
   void setSketch(const session::Document& document);
   void setPlan(const session::Document& document);
   void setCursor(double t_s);
@@ -54,6 +55,7 @@ class SceneContents final {
   std::array<scene::FrustumRep, 2> m_frustums;
   double m_opacity = 0.8;
   bool m_ghost = false;
+  Eigen::VectorXd m_drawn;                 // Configuration drawn; empty: none yet.
 };
 
 }  // namespace longarm::ui

@@ -13,7 +13,7 @@ using vision::PaneSide;
 
 namespace {
 
-constexpr int kPaneEvery_ms = 250;
+constexpr int kPaneEvery_ms = 500;
 
 }  // namespace
 
@@ -114,7 +114,7 @@ void ScenePanel::onWorkcell() {
 void ScenePanel::onJoints() {
   const auto* runtime = m_bench.robot().runtime();
   const auto joints = runtime != nullptr ? runtime->jointState() : nullptr;
-  m_contents->setJoints(joints.get());
+  if (!m_contents->setJoints(joints.get())) return;
   if (!m_framed && joints) {
     m_framed = true;
     showAll(CameraPreset::kIso);
@@ -150,6 +150,10 @@ void ScenePanel::showPanes() {
     if (!pane.changed) continue;
     pane.changed = false;
     m_contents->setPicture(side, pane.view, pane.picture);
+    if (pane.view && !m_framed && !m_bench.document().workcell()) {
+      m_framed = true;
+      showAll(CameraPreset::kIso);
+    }
   }
   m_view->requestRender();
 }

@@ -58,7 +58,7 @@ SnapshotPane::SnapshotPane(PaneSide side, Workbench& bench, Appearance& appearan
   connect(&m_bench.live(), &LivePictures::pictureArrived, this, [this](const QString& camera) {
     if (m_live && camera == m_bench.paneCamera(m_side)) refreshLive();
   });
-  connect(&m_bench.robot(), &RobotSession::polled, this, &SnapshotPane::refreshAge);
+  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &SnapshotPane::refreshAge);
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, [this] { if (!m_canvas->hasPicture()) refreshPicture(); });
   connect(&m_appearance, &Appearance::changed, this, &SnapshotPane::applyTheme);
   applyTheme();

@@ -54,7 +54,7 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   m_arm = new StatusLamp(this);
   m_video = new StatusLamp(this);
   m_arm->setReserve(QStringLiteral("arm slowing down"));
-  m_video->setReserve(QStringLiteral("video 0.00 s"));
+  m_video->setReserve(QStringLiteral("video 00.0 s"));
   row->addWidget(m_link);
   row->addWidget(m_restart);
   row->addWidget(m_owner);
@@ -79,7 +79,8 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   connect(&m_forget, &QTimer::timeout, this, [this] { m_message->setFullText({}); });
   connect(&m_bench, &Workbench::said, this, &StatusStrip::showMessage);
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, [this] { showMode(); showLink(); showArm(); });
-  connect(&m_bench.robot(), &RobotSession::polled, this, [this] { showArm(); showVideo(); });
+  connect(&m_bench.robot(), &RobotSession::polled, this, &StatusStrip::showArm);
+  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &StatusStrip::showVideo);
   connect(&m_bench.plans(), &session::PlanController::stateChanged, this, &StatusStrip::showProgress);
   connect(&m_bench.plans(), &session::PlanController::progressChanged, this, &StatusStrip::showProgress);
   connect(&m_appearance, &Appearance::changed, this, &StatusStrip::applyTheme);
@@ -147,7 +148,7 @@ void StatusStrip::showVideo() {
     return;
   }
   const auto level = *oldest < 0.25 ? StatusLamp::Level::kOk : *oldest < 1 ? StatusLamp::Level::kDegraded : StatusLamp::Level::kLost;
-  m_video->setStatus(level, tr("video %1 s").arg(QString::number(std::min(*oldest, 999.0), 'f', *oldest < 10 ? 2 : 0)),
+  m_video->setStatus(level, tr("video %1 s").arg(QString::number(std::min(*oldest, 999.0), 'f', *oldest < 10 ? 1 : 0)),
                      tr("Age of the older of the panes' live pictures, from exposure"));
 }
 

@@ -12,6 +12,10 @@ Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
       m_targeting(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
       m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder) {
+  // A robot that renders its pictures beside a compiler, or sends them over a poor radio, needs seconds for one.
+  session::SnapshotTiming timing;
+  timing.timeout_s = 10;
+  m_snapshots.setTiming(timing);
   connectParts();
 }
 

@@ -33,6 +33,7 @@ QIcon icon(const QString& action, const Theme& theme) {
   for (const int size : {16, 24, 32, 48, 64}) {
     result.addPixmap(drawn(svg, theme.text, size), QIcon::Normal, QIcon::Off);
     result.addPixmap(drawn(svg, theme.on_selection, size), QIcon::Normal, QIcon::On);
+    result.addPixmap(drawn(svg, theme.on_selection, size), QIcon::Selected, QIcon::Off);
     result.addPixmap(drawn(svg, faint, size), QIcon::Disabled, QIcon::Off);
     result.addPixmap(drawn(svg, faint, size), QIcon::Disabled, QIcon::On);
   }

@@ -20,6 +20,7 @@ namespace longarm::widgets {
 namespace {
 
 constexpr int kFrame_ms = 33;
+constexpr int kShareOfTime = 3, kSlowest_ms = 250;
 constexpr double kClickSlack = 4;              // a press that moves less is a click [screen px]
 
 double distanceToSegment(const QPointF& p, const QPointF& a, const QPointF& b) {
@@ -79,8 +80,9 @@ bool SceneView::usable() const { return m_surface->isValid(); }
 
 void SceneView::requestRender() {
   if (m_render_timer.isActive() || !isVisible()) return;
-  const qint64 since = m_since_render.isValid() ? m_since_render.elapsed() : kFrame_ms;
-  m_render_timer.start(static_cast<int>(std::clamp<qint64>(kFrame_ms - since, 0, kFrame_ms)));
+  const qint64 rest = std::max<qint64>(kFrame_ms, m_rest_ms);
+  const qint64 since = m_since_render.isValid() ? m_since_render.elapsed() : rest;
+  m_render_timer.start(static_cast<int>(std::clamp<qint64>(rest - since, 0, rest)));
 }
 
 void SceneView::render() {
@@ -90,6 +92,8 @@ void SceneView::render() {
   m_vtk->renderer->ResetCameraClippingRange();
   m_vtk->window->Render();
   m_surface->update();
+  // Without a graphics card a rendering takes tens of milliseconds on every core: leave as much for the rest.
+  m_rest_ms = std::min<qint64>(kShareOfTime * m_since_render.elapsed(), kSlowest_ms);
 }
 
 void SceneView::showEvent(QShowEvent* event) {

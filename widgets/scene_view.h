@@ -31,7 +31,7 @@ struct Pickable {
   std::vector<Eigen::Vector3d> points;
 };
 
-/// Renders when asked, at most 30 times a second, and never by itself.  Left drag orbits, middle or Shift drag
+/// Renders when asked, at most 30 times a second and never more than a third of the time, and never by itself.  Left drag orbits, middle or Shift drag
 /// pans, wheel or right drag zooms; a click without a drag picks.  GUI thread only.
 class SceneView final : public QWidget {
   Q_OBJECT
@@ -85,6 +85,7 @@ class SceneView final : public QWidget {
   QTimer m_render_timer;
   QElapsedTimer m_since_render;
   int m_render_count = 0;
+  qint64 m_rest_ms = 0;                            // From the start of a rendering to the next at the earliest.
   QPointF m_press;
   std::optional<vision::View> m_fixed_view;
 };

@@ -1,0 +1,82 @@
+// The whole window with the real virtual robot as a child process: the task, and what becomes of faults.
+#include <csignal>
+
+#include <QLineEdit>
+#include <QTest>
+
+#include "tests/ui/window_fixture.h"
+#include "ui/demonstration.h"
+
+namespace longarm {
+namespace {
+
+using session::LinkState;
+using ui::SimulatedHand;
+using vision::PaneSide;
+
+class WindowWithRobot : public tests::WindowFixture {
+ protected:
+  void openWithRobot(const QSize& size = {1280, 800}) {
+    openWindow(QStringLiteral("dark"), size);
+    bench->openRobot({});
+    ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().linkUp(); }, 30)) << bench->robot().status().link_text;
+  }
+  bool pairTaken() const {
+    return bench->document().paneSnapshot(PaneSide::kLeft) && bench->document().paneSnapshot(PaneSide::kRight);
+  }
+};
+
+TEST_F(WindowWithRobot, GrabsThePipeByMouseAlone) {
+  openWindow(QStringLiteral("dark"), {1920, 1080});
+  bench->openRobot({});
+  ui::DemonstrationOptions options;
+  const QString pictures = qEnvironmentVariable("LONGARM_UI_PICTURES");
+  options.folder = pictures.isEmpty() ? folder.filePath(QStringLiteral("pictures")) : pictures + QStringLiteral("/demo");
+  ui::Demonstration demonstration(*window, options);
+  const Status done = demonstration.run();
+  EXPECT_TRUE(done.ok()) << done.error().message;
+  EXPECT_GE(demonstration.picturesTaken(), 3);
+  EXPECT_TRUE(bench->robot().runtime() != nullptr && bench->robot().runtime()->holding());
+}
+
+TEST_F(WindowWithRobot, OutlivesItsRobotAndTakesItBack) {
+  openWithRobot();
+  bench->takePair();
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return pairTaken(); }, 40)) << window->strip()->message().toStdString();
+  const auto state = bench->document().state();
+  ASSERT_GT(bench->robot().runtime()->virtualRobotPid(), 0);
+  ::kill(bench->robot().runtime()->virtualRobotPid(), SIGKILL);
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().link == LinkState::kLost; }, 10));
+  look(QStringLiteral("robot-lost"));
+  EXPECT_TRUE(window->isVisible());
+  EXPECT_EQ(QApplication::activeModalWidget(), nullptr);
+  EXPECT_TRUE(window->notices()->has(QStringLiteral("link")));
+  EXPECT_EQ(bench->document().state(), state);
+  EXPECT_FALSE(window->actions().whyNot(ui::ActionId::kTakePair).isEmpty());
+  window->actions().at(ui::ActionId::kRestart)->trigger();
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().linkUp(); }, 30)) << bench->robot().status().link_text;
+  EXPECT_EQ(bench->document().state(), state);
+  EXPECT_TRUE(bench->robot().status().gate.stopped) << "nothing moves after a restart before the operator resets";
+}
+
+TEST_F(WindowWithRobot, SpaceStopsAMovingArmFromATextField) {
+  openWithRobot();
+  ASSERT_TRUE(hand.hold(window->stopPanel()->resetButton(), [this] { return !bench->robot().status().gate.stopped; }, 10));
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return window->actions().whyNot(ui::ActionId::kStow).isEmpty(); }, 10));
+  bench->plan(QStringLiteral("stow"));
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->play().state().can_play; }, 30))
+      << bench->play().state().why_not_play.toStdString();
+  bench->play().play();
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().moving; }, 5)) << window->strip()->message().toStdString();
+  QLineEdit field(window.get());
+  field.show();
+  field.setFocus();
+  QTest::keyClick(&field, Qt::Key_Space);
+  EXPECT_TRUE(field.text().isEmpty());
+  EXPECT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().gate.stopped; }, 2));
+  EXPECT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().stop_confirmed; }, 3));
+  EXPECT_FALSE(bench->play().state().can_play);
+}
+
+}  // namespace
+}  // namespace longarm
