@@ -231,7 +231,12 @@ Status Demonstration::planGrab() {
   if (!SimulatedHand::waitFor(finished, kPlan_s)) return failed(QStringLiteral("No plan: %1").arg(m_window.strip()->message()));
   const auto& plan = m_bench.document().plan()->plan;
   if (!plan.ok()) return {ErrorCode::kNoSolution, "Grab Pipe was refused: " + plan.reason};
-  return shoot("plan");
+  auto* bar = m_window.motion()->bar()->timeBar();
+  const double y = bar->height() / 3.0;
+  m_hand.drag(bar, {bar->xOf(0), y}, {bar->xOf(0.75 * plan.trajectory.duration()), y});
+  if (const Status shown = shoot("preview"); !shown) return shown;
+  m_hand.drag(bar, {bar->xOf(0.75 * plan.trajectory.duration()), y}, {bar->xOf(0), y});
+  return {};
 }
 
 Status Demonstration::release() {
@@ -258,7 +263,11 @@ Status Demonstration::play() {
   m_hand.click(button);
   const auto player = [this] { return m_bench.robot().status().player; };
   const double half = m_bench.document().plan()->plan.trajectory.duration() / 2;
-  const auto over = [&] { return player() == planning::PlayerState::kDone || player() == planning::PlayerState::kHalted; };
+  const auto over = [&] {
+    // On a busy machine the watchdog may pause the arm: press Play again.
+    if (player() == planning::PlayerState::kPaused && button->isEnabled()) m_hand.click(button);
+    return player() == planning::PlayerState::kDone || player() == planning::PlayerState::kHalted;
+  };
   const auto midway = [&] { return over() || m_bench.play().state().cursor_s > half; };
   if (!SimulatedHand::waitFor(midway, kPlay_s)) return failed(QStringLiteral("The arm did not get half way."));
   if (const Status shown = shoot("playing"); !shown) return shown;
@@ -305,7 +314,14 @@ Status Demonstration::shoot(const char* name) {
   m_window.scene()->view()->requestRender();
   SimulatedHand::pump(350);
   const QString path = QStringLiteral("%1/%2-%3.png").arg(m_options.folder).arg(m_pictures + 1, 2, 10, QLatin1Char('0')).arg(QString::fromLatin1(name));
-  if (!m_window.grab().save(path)) return failed(QStringLiteral("The picture %1 could not be written.").arg(path));
+  // Packing a picture takes long enough for the watchdog to think that the window hangs: not on this thread.
+  const QImage image = m_window.grab().toImage();
+  const auto written = std::make_shared<std::optional<bool>>();
+  m_bench.jobs().run<bool>(
+      &m_window, [image, path]() -> Result<bool> { return image.save(path); },
+      [written](Result<bool> result) { *written = result.valueOr(false); });
+  SimulatedHand::waitFor([written] { return written->has_value(); }, 60);
+  if (!written->value_or(false)) return failed(QStringLiteral("The picture %1 could not be written.").arg(path));
   ++m_pictures;
   return {};
 }

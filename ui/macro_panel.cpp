@@ -1,5 +1,7 @@
 #include "ui/macro_panel.h"
 
+#include <algorithm>
+
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -14,7 +16,7 @@ namespace longarm::ui {
 
 namespace {
 
-constexpr int kColumns = 4;
+constexpr int kColumns = 3;
 
 // Macros that have an action of their own, with menu and keys.
 const std::map<QString, ActionId>& actionsOfMacros() {
@@ -93,7 +95,9 @@ void MacroPanel::rebuild(const std::vector<session::MacroRow>& rows) {
   for (const auto& [name, each] : m_buttons) each->deleteLater();
   m_buttons.clear();
   int place = 0;
-  for (const auto& row : rows) {
+  auto ordered = rows;
+  std::stable_partition(ordered.begin(), ordered.end(), [](const session::MacroRow& row) { return row.takes.has_value(); });
+  for (const auto& row : ordered) {
     auto* button = new QPushButton(row.title, this);
     button->setProperty("action_icon", iconOf(row));
     button->setIconSize({20, 20});

@@ -55,7 +55,10 @@ QString MotionPanel::caption() const {
   const auto& record = m_bench.document().plan();
   const auto& state = m_bench.play().state();
   if (!record) return {};
-  const QString name = QString::fromStdString(record->macro);
+  QString name = QString::fromStdString(record->macro);
+  for (const auto& row : m_bench.plans().macros()) {
+    if (row.name == name) name = row.title;
+  }
   if (!state.has_plan) return tr("%1: refused").arg(name);
   const QString phase = state.playing ? tr("moving") : state.loaded ? tr("on the path") : tr("preview");
   return tr("%1 (%2), %3 s, clearance %4 mm")

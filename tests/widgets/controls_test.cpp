@@ -98,7 +98,8 @@ TEST(TransportBar, EnablesWhatItsStateAllowsAndSaysWhyNot) {
   bar.setState(state);
   EXPECT_FALSE(bar.playButton()->isEnabled());
   EXPECT_TRUE(bar.playButton()->toolTip().contains(QStringLiteral("Plan a motion")));
-  state.loaded = state.can_play = state.can_scrub = true;
+  EXPECT_FALSE(bar.backUpButton()->isEnabled());
+  state.loaded = state.can_play = state.can_back_up = state.can_scrub = true;
   bar.setState(state);
   EXPECT_TRUE(bar.playButton()->isEnabled());
   QSignalSpy play(&bar, &TransportBar::playWanted), back(&bar, &TransportBar::backUpWanted);
