@@ -21,15 +21,12 @@ Result<CameraRig> CameraRig::load(const planning::Workcell& workcell) {
     Camera camera;
     camera.spec = spec;
     const bool ptz = spec.role == "ptz";
-    auto file = vision::readCameraFile(spec.calibration, ptz ? std::optional<double>(0) : std::nullopt);
+    camera.zoom_file = ptz && vision::readCameraFile(spec.calibration, 0.0).ok();
+    const auto file = vision::readCameraFile(spec.calibration, camera.zoom_file ? std::optional<double>(0) : std::nullopt);
     if (!file) return file.error();
     camera.wide = file->camera;
     camera.wide.name = spec.name;
-    if (ptz) {
-      camera.zoom.emplace(0, 0, 1, kZoomSpeed, 10 * kZoomSpeed);
-      const auto tele = vision::readCameraFile(spec.calibration, 1.0);
-      camera.zoom_file = tele && tele->camera.fx != camera.wide.fx;
-    }
+    if (ptz) camera.zoom.emplace(0, 0, 1, kZoomSpeed, 10 * kZoomSpeed);
     rig.m_cameras.emplace(spec.name, std::move(camera));
   }
   return rig;

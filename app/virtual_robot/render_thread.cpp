@@ -11,16 +11,17 @@
 namespace longarm::virtual_robot {
 namespace {
 
-constexpr int kNiceness = 10;            // joint states come first; threads of the GL library inherit it
+constexpr int kNiceness = 5;            // joint states come first; threads of the GL library inherit it
 
 void lowerPriority() { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness); }
 
 }  // namespace
 
-RenderThread::RenderThread(planning::Workcell workcell, planning::Scenario scenario,
+RenderThread::RenderThread(planning::Workcell workcell, planning::Scenario scenario, bool behind,
                            std::function<void(Picture)> deliver, std::function<void(std::string)> failed)
     : m_workcell(std::move(workcell)),
       m_scenario(std::move(scenario)),
+      m_behind(behind),
       m_deliver(std::move(deliver)),
       m_failed(std::move(failed)) {}
 
@@ -75,7 +76,7 @@ void RenderThread::work(PictureMaker* maker, const PictureRequest& request) {
 }
 
 void RenderThread::run() {
-  lowerPriority();
+  if (m_behind) lowerPriority();
   auto maker = PictureMaker::create(m_workcell, m_scenario);
   if (!maker) complain(maker.error().message);
   const SteadyClock clock;

@@ -22,14 +22,15 @@ struct PictureRequest {
   std::vector<PictureOrder> orders;
 };
 
-/// Owns the PictureMaker on a thread of low priority, started with the first request.  A request that waits is replaced
+/// Owns the PictureMaker on a thread of its own, started with the first request.  A request that waits is replaced
 /// by a newer one.  Thread-safe.
 class RenderThread {
  public:
+  /// @param behind   whether the thread gives way to others, joint states first
   /// @param deliver  called on the render thread with each picture
   /// @param failed   called on the render thread with a sentence; at most once per cause
-  RenderThread(planning::Workcell workcell, planning::Scenario scenario, std::function<void(Picture)> deliver,
-               std::function<void(std::string)> failed);
+  RenderThread(planning::Workcell workcell, planning::Scenario scenario, bool behind,
+               std::function<void(Picture)> deliver, std::function<void(std::string)> failed);
   ~RenderThread();
 
   void request(PictureRequest request);
@@ -47,6 +48,7 @@ class RenderThread {
 
   const planning::Workcell m_workcell;
   const planning::Scenario m_scenario;
+  const bool m_behind;
   const std::function<void(Picture)> m_deliver;
   const std::function<void(std::string)> m_failed;
   mutable std::mutex m_mutex;

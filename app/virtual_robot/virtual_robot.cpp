@@ -48,7 +48,7 @@ VirtualRobot::VirtualRobot(const RobotOptions& options, RobotOutlets outlets, st
   m_services = std::make_unique<RobotServices>(*m_body, m_rig, advance, m_outlets.quit);
   m_protocol = std::make_unique<RobotProtocol>(*m_body, m_rig, *m_services, options.cameras, m_outlets.send);
   m_renderer = std::make_unique<RenderThread>(
-      m_body->workcell(), m_body->scenario(), [this](Picture picture) { collect(std::move(picture)); },
+      m_body->workcell(), m_body->scenario(), !options.lockstep, [this](Picture picture) { collect(std::move(picture)); },
       [this](std::string what) {
         {
           std::lock_guard<std::mutex> lock(m_mutex);
