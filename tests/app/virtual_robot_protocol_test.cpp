@@ -97,7 +97,7 @@ json trajectory(const Horizon& horizon, double stamp_s = 0) {
 
 Horizon smallMove(const RobotBody& body, double by, double seconds = 0.5) {
   const Eigen::VectorXd q = body.arm().commandedAt(body.time_s()).positions;
-  return quinticTo(body.arm().joints(), q, q + Eigen::VectorXd::Constant(q.size(), by), seconds);
+  return quinticTo(body.arm().joints(), q, q + sweep(by), seconds);
 }
 
 TEST(VirtualProtocol, SendsJointStatesAHundredTimesASecondOfItsOwnTime) {

@@ -56,6 +56,11 @@ inline void run(RobotBody& body, double seconds) {
   }
 }
 
+/// A change of all six joints that the start pose leaves room for.
+inline Eigen::VectorXd sweep(double by) {
+  return (Eigen::VectorXd(6) << by, by, -by, by, by, by).finished();
+}
+
 /// Moves the arm's joints by `change` within `seconds` and waits until it is over.
 inline void moveArm(RobotBody& body, const Eigen::VectorXd& change, double seconds) {
   body.heartbeat();
