@@ -10,6 +10,7 @@ namespace longarm::virtual_robot {
 namespace {
 
 constexpr double kRenderShare = 0.7;     // of the time, so that the console gets its part of the processor
+constexpr double kLongestRest_s = 0.3;   // counted of a picture that took long, as the first one does
 
 Result<planning::Workcell> workcellOf(const planning::Scenario& scenario) {
   if (scenario.robot != "longarm_one") return planning::loadWorkcell(scenario.robot);
@@ -120,7 +121,7 @@ void VirtualRobot::takePictures() {
   const auto due = m_rig.takeDue(now_s);
   if (due.empty()) return;
   m_renderer->request(requestFor(due));
-  m_next_render_s = now_s + m_renderer->lastDuration_s() / kRenderShare;
+  m_next_render_s = now_s + std::min(m_renderer->lastDuration_s(), kLongestRest_s) / kRenderShare;
 }
 
 void VirtualRobot::tick() {
