@@ -65,7 +65,7 @@ class Dice {
  public:
   explicit Dice(std::uint64_t seed) : m_rng(seed) {}
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(m_rng); }
-  double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(m_rng); }
+  double normal(double sigma) { return sigma * std::normal_distribution<double>(0, 1)(m_rng); }
   Eigen::Vector2d normal2(double sigma) {
     const double a = normal(sigma);
     return {a, normal(sigma)};

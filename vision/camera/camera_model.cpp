@@ -81,11 +81,13 @@ bool newton(const std::array<double, 5>& d, const Eigen::Vector2d& target, int s
     const double ex = target.x() - at->x, ey = target.y() - at->y;
     const double error2 = ex * ex + ey * ey;
     if (error2 < 1e-27) return true;                          // 3e-14: below 1e-9 px for any focal length in use
+    const bool last = error2 < 1e-14;                         // squared by one more step, and `at` good to 1e-7
     if (error2 < 1e-22 && error2 >= 0.25 * before) return true;  // no more digits to gain
     const double determinant = at->xx * at->yy - at->xy * at->xy;
     if (!(std::abs(determinant) > 1e-14)) return false;
     n->x() += (at->yy * ex - at->xy * ey) / determinant;
     n->y() += (at->xx * ey - at->xy * ex) / determinant;
+    if (last && std::abs(determinant) > 0.01) return true;
     before = error2;
   }
   return false;
@@ -110,10 +112,12 @@ bool undistortPixel(const CameraModel& camera, double max_radius2, const Eigen::
   target.y() = (pixel.y() - camera.cy) / camera.fy;
   target.x() = (pixel.x() - camera.cx - camera.skew * target.y()) / camera.fx;
   const auto& d = camera.distortion;
-  // One fixed-point step, then Newton: three or four steps inside ordinary pictures.
+  // The radial inverse as a series (reversion of r + k1 r^3 + k2 r^5 + k3 r^7), then Newton: two or three steps
+  // inside ordinary pictures.
   const double r2 = target.squaredNorm();
-  const double g = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  *n = g > 0.5 ? Eigen::Vector2d(target / g) : target;
+  const double g = 1 + r2 * (-d[0] + r2 * (3 * d[0] * d[0] - d[1] +
+                                           r2 * (d[0] * (8 * d[1] - 12 * d[0] * d[0]) - d[4])));
+  *n = g > 0.5 && g < 2 ? Eigen::Vector2d(target * g) : target;
   const double limit = max_radius2 * (1 + 1e-9);
   if (newton(d, target, 12, n, at) && n->squaredNorm() <= limit) return true;
   // Near the edge of the range Newton jumps over it: start from the radial inverse, which is bracketed.

@@ -38,6 +38,11 @@ class Ray {
   const Vector3d& t() const { return m_t; }
   double maxRadius2() const { return m_max_radius2; }
 
+  bool isInRange(double w) const {
+    const Vector3d p = m_a + w * m_t;
+    return p.z() > kNearest * w && p.head<2>().squaredNorm() <= m_max_radius2 * p.z() * p.z();
+  }
+
   bool sees(double w, Vector2d* pixel) const {
     const Vector3d p = m_a + w * m_t;
     if (!(p.z() > kNearest * w)) return false;
@@ -182,20 +187,30 @@ std::optional<EpipolarPoint> EpipolarCurve::nearest(const Vector2d& pixel) const
 
 bool sampleEpipolarCurve(const View& from, const Vector2d& pixel, const View& to, double near_m, double far_m, int n,
                          double* u, double* v, bool* visible) {
-  constexpr int kBlock = 128;
   Vector2d start;
   internal::Distorted at;
   if (!internal::undistortPixel(from.camera, internal::monotoneRadius2(from.camera), pixel, &start, &at)) return false;
   const Ray ray(from, start, to);
   const internal::LoopCamera camera = loopCamera(to.camera);
-  const double first = 1 / near_m, step = (1 / far_m - first) / (n - 1);
-  const double max_radius2 = ray.maxRadius2();
-  double w[kBlock], z[kBlock], r2[kBlock];
+  internal::LoopRay samples{{ray.a().x(), ray.a().y(), ray.a().z()}, {ray.t().x(), ray.t().y(), ray.t().z()}, 1 / near_m, 0};
+  samples.step = (1 / far_m - samples.first) / (n - 1);
+  // Depth is linear along the ray and the radius convex along its straight ideal image: when both ends are in
+  // range, so is all between them.
+  if (ray.isInRange(1 / near_m) && ray.isInRange(1 / far_m)) {
+    internal::projectSamples(camera, samples, n, u, v);
+    std::fill(visible, visible + n, true);
+    return true;
+  }
+  constexpr int kBlock = 128;
+  double z[kBlock], r2[kBlock];
   for (int done = 0; done < n; done += kBlock) {
     const int count = std::min(kBlock, n - done);
-    for (int i = 0; i < count; ++i) w[i] = first + step * (done + i);
-    internal::projectAlongRay(camera, ray.a().data(), ray.t().data(), w, count, u + done, v + done, z, r2);
-    for (int i = 0; i < count; ++i) visible[done + i] = (z[i] > kNearest * w[i]) & (r2[i] <= max_radius2);
+    internal::LoopRay block = samples;
+    block.first += samples.step * done;
+    internal::projectSamplesWithRange(camera, block, count, u + done, v + done, z, r2);
+    for (int i = 0; i < count; ++i) {
+      visible[done + i] = (z[i] > kNearest * (block.first + samples.step * i)) & (r2[i] <= ray.maxRadius2());
+    }
   }
   return true;
 }

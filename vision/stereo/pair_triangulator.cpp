@@ -2,90 +2,80 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "core/require.h"
 #include "vision/camera/lens.h"
 
 namespace longarm::vision {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
-// (K2 D)^T (K2 D) / sigma^2: the pick's information about normalised coordinates.
-Matrix2d informationOf(const CameraModel& camera, const internal::Distorted& at, double weight) {
-  const Matrix2d M = internal::pixelByNormalised(camera, at);
-  return weight * M.transpose() * M;
-}
-
-// Adds one view's J^T W J and J^T W r for a point p in its camera frame, both expressed in that frame.
-// J = [1/z 0 -x/z; 0 1/z -y/z] makes J^T W J three numbers, scaled.
-inline void accumulate(const Vector3d& p, const Vector2d& n, const Matrix2d& W, Matrix3d* H, Vector3d* g) {
-  const double iz = 1 / p.z();
-  const double x = p.x() * iz, y = p.y() * iz;
-  const double rx = n.x() - x, ry = n.y() - y;
-  const double wxx = W(0, 0) * iz * iz, wxy = W(0, 1) * iz * iz, wyy = W(1, 1) * iz * iz;
-  const double a = wxx * x + wxy * y, b = wxy * x + wyy * y;
-  *H << wxx, wxy, -a, wxy, wyy, -b, -a, -b, a * x + b * y;
-  const double ex = (W(0, 0) * rx + W(0, 1) * ry) * iz, ey = (W(0, 1) * rx + W(1, 1) * ry) * iz;
-  *g << ex, ey, -(x * ex + y * ey);
+void setCamera(const View& view, std::size_t k, internal::CameraPair* pair) {
+  const CameraModel& camera = view.camera;
+  const auto& d = camera.distortion;
+  pair->cx[k] = camera.cx;
+  pair->cy[k] = camera.cy;
+  pair->skew[k] = camera.skew;
+  pair->fx[k] = camera.fx;
+  pair->fy[k] = camera.fy;
+  pair->inverse_fx[k] = 1 / camera.fx;
+  pair->inverse_fy[k] = 1 / camera.fy;
+  pair->k1[k] = d[0];
+  pair->k2[k] = d[1];
+  pair->p1[k] = d[2];
+  pair->p2[k] = d[3];
+  pair->k3[k] = d[4];
+  // Reversion of r + k1 r^3 + k2 r^5 + k3 r^7.
+  pair->s1[k] = -d[0];
+  pair->s2[k] = 3 * d[0] * d[0] - d[1];
+  pair->s3[k] = -12 * d[0] * d[0] * d[0] + 8 * d[0] * d[1] - d[4];
+  pair->max_radius2[k] = internal::monotoneRadius2(camera);
+  pair->weight[k] = 1 / (view.sigma_px * view.sigma_px);
+  for (int i = 0; i < 3; ++i) {
+    pair->axis_x[k][i] = view.X_WC.linear()(i, 0);
+    pair->axis_y[k][i] = view.X_WC.linear()(i, 1);
+    pair->axis_z[k][i] = view.X_WC.linear()(i, 2);
+  }
 }
 
 }  // namespace
 
 PairTriangulator::PairTriangulator(const View& a, const View& b, double refuse_parallax)
-    : m_camera_a(a.camera), m_camera_b(b.camera), m_R_WA(a.X_WC.linear()), m_p_WA(a.X_WC.translation()) {
+    : m_camera_a(a.camera), m_camera_b(b.camera), m_p_WA(a.X_WC.translation()) {
   LONGARM_REQUIRE(a.parent == b.parent, "PairTriangulator: parents " + a.parent + " and " + b.parent);
-  m_R_AB = m_R_WA.transpose() * b.X_WC.linear();
-  m_p_AB = m_R_WA.transpose() * (b.X_WC.translation() - m_p_WA);
-  m_max_radius2_a = internal::monotoneRadius2(m_camera_a);
-  m_max_radius2_b = internal::monotoneRadius2(m_camera_b);
-  m_weight_a = 1 / (a.sigma_px * a.sigma_px);
-  m_weight_b = 1 / (b.sigma_px * b.sigma_px);
+  setCamera(a, 0, &m_pair);
+  setCamera(b, 1, &m_pair);
+  const Eigen::Vector3d baseline = b.X_WC.translation() - m_p_WA;
+  for (int i = 0; i < 3; ++i) m_pair.baseline[i] = baseline[i];
   const double sine = std::sin(refuse_parallax);
-  m_min_sine2 = sine * sine;
+  m_pair.min_sine2 = sine * sine;
 }
 
 bool PairTriangulator::locate(const Vector2d& pixel_a, const Vector2d& pixel_b, PairPoint* point) const {
+  const double u[2] = {pixel_a.x(), pixel_b.x()}, v[2] = {pixel_a.y(), pixel_b.y()};
+  internal::PairSolution solution;
+  auto answer = internal::solvePixels(m_pair, u, v, &solution);
+  if (answer == internal::PairAnswer::kLensUnsettled) answer = solveThoroughly(pixel_a, pixel_b, &solution);
+  if (answer != internal::PairAnswer::kLocated) return false;
+  point->xyz = m_p_WA + Eigen::Vector3d(solution.p[0], solution.p[1], solution.p[2]);
+  const auto& s = solution;
+  point->covariance << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+  point->miss_m = s.gap;
+  point->parallax = std::atan2(s.sine, s.cosine);
+  return true;
+}
+
+internal::PairAnswer PairTriangulator::solveThoroughly(const Vector2d& pixel_a, const Vector2d& pixel_b,
+                                                       internal::PairSolution* solution) const {
   Vector2d na, nb;
   internal::Distorted at_a, at_b;
-  if (!internal::undistortPixel(m_camera_a, m_max_radius2_a, pixel_a, &na, &at_a) ||
-      !internal::undistortPixel(m_camera_b, m_max_radius2_b, pixel_b, &nb, &at_b)) {
-    return false;
+  if (!internal::undistortPixel(m_camera_a, m_pair.max_radius2[0], pixel_a, &na, &at_a) ||
+      !internal::undistortPixel(m_camera_b, m_pair.max_radius2[1], pixel_b, &nb, &at_b)) {
+    return internal::PairAnswer::kRefused;
   }
-  // Middle of the common perpendicular, in A.
-  const Vector3d va(na.x(), na.y(), 1);
-  const Vector3d vb = m_R_AB * Vector3d(nb.x(), nb.y(), 1);
-  const double aa = va.squaredNorm(), bb = vb.squaredNorm(), ab = va.dot(vb);
-  const double determinant = aa * bb - ab * ab;   // |va x vb|^2
-  if (!(determinant >= m_min_sine2 * aa * bb)) return false;
-  const double ta = va.dot(m_p_AB), tb = vb.dot(m_p_AB);
-  const double ka = (bb * ta - ab * tb) / determinant, kb = (ab * ta - aa * tb) / determinant;
-  if (!(ka > 0 && kb > 0)) return false;
-  Vector3d p = 0.5 * (ka * va + m_p_AB + kb * vb);
-  const double gap = std::abs(m_p_AB.dot(va.cross(vb))) / std::sqrt(determinant);
-
-  const Matrix2d Wa = informationOf(m_camera_a, at_a, m_weight_a);
-  const Matrix2d Wb = informationOf(m_camera_b, at_b, m_weight_b);
-  Matrix3d Ha, Hb, inverse;
-  Vector3d ga, gb;
-  for (int i = 0; i < 2; ++i) {
-    const Vector3d p_B = m_R_AB.transpose() * (p - m_p_AB);
-    if (!(p.z() > 1e-9 && p_B.z() > 1e-9)) return false;
-    accumulate(p, na, Wa, &Ha, &ga);
-    accumulate(p_B, nb, Wb, &Hb, &gb);
-    const Matrix3d H = Ha + m_R_AB * Hb * m_R_AB.transpose();
-    inverse = H.inverse();
-    p += inverse * (ga + m_R_AB * gb);
-  }
-  point->xyz = m_p_WA + m_R_WA * p;
-  point->covariance = m_R_WA * inverse * m_R_WA.transpose();
-  point->miss_m = gap;
-  point->parallax = std::atan2(std::sqrt(determinant), std::abs(ab));
-  return true;
+  const double x[2] = {na.x(), nb.x()}, y[2] = {na.y(), nb.y()};
+  const double xx[2] = {at_a.xx, at_b.xx}, xy[2] = {at_a.xy, at_b.xy}, yy[2] = {at_a.yy, at_b.yy};
+  return internal::solveRays(m_pair, x, y, xx, xy, yy, solution);
 }
 
 }  // namespace longarm::vision

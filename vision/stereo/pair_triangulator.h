@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "vision/snapshot/view.h"
+#include "vision/stereo/pair_kernel.h"
 
 namespace longarm::vision {
 
@@ -18,8 +19,8 @@ struct PairPoint {
 };
 
 /// Two views prepared once, then solved for many pairs.  Agrees with triangulate() to far below the noise:
-/// the pixel metric is carried to normalised coordinates by the lens' derivative at each click, where two
-/// Gauss-Newton steps are taken.  Thread-compatible; locate() is const and allocates nothing.
+/// the pixel metric is carried to normalised coordinates by the lens' derivative at each click, where one
+/// Gauss-Newton step is taken from the middle of the common perpendicular.  Thread-compatible; locate() is const and allocates nothing.
 class PairTriangulator {
  public:
   /// @pre Both views have the same parent.
@@ -30,12 +31,13 @@ class PairTriangulator {
   bool locate(const Eigen::Vector2d& pixel_a, const Eigen::Vector2d& pixel_b, PairPoint* point) const;
 
  private:
+  /// For pixels at the edge of what a lens shows, where the quick inversion does not settle.
+  internal::PairAnswer solveThoroughly(const Eigen::Vector2d& pixel_a, const Eigen::Vector2d& pixel_b,
+                                       internal::PairSolution* solution) const;
+
   CameraModel m_camera_a, m_camera_b;
-  Eigen::Matrix3d m_R_WA = Eigen::Matrix3d::Identity(), m_R_AB = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d m_p_WA = Eigen::Vector3d::Zero(), m_p_AB = Eigen::Vector3d::Zero();
-  double m_max_radius2_a = 0, m_max_radius2_b = 0;
-  double m_weight_a = 1, m_weight_b = 1;       ///< 1 / sigma_px^2
-  double m_min_sine2 = 0;
+  Eigen::Vector3d m_p_WA = Eigen::Vector3d::Zero();
+  internal::CameraPair m_pair;
 };
 
 }  // namespace longarm::vision

@@ -1,0 +1,58 @@
+#pragma once
+
+/// @file
+/// Contests between our code and a peer's, measured side by side and judged against gates.
+
+#include <functional>
+#include <iosfwd>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace longarm::benchmarks {
+
+/// What the answer is worth, whatever its speed.
+struct Accuracy {
+  bool holds = false;
+  std::string text;                    ///< Both sides' figures and the limit, for people.
+};
+
+/// One contest.  The two functions do the same job once; they run in one program, interleaved.
+struct Contest {
+  std::string name, peer;
+  std::function<void()> ours, theirs;
+  double gate = 1;                     ///< Least ratio peer / ours.
+  double moonshot = 1;                 ///< What is aimed at.
+  bool real_time = false;              ///< Drawing: wall time counts, not the processor's.
+  std::function<Accuracy()> accuracy;
+};
+
+/// A latency that must stay below a limit; has no peer.
+struct Budget {
+  std::string name;
+  double limit_s = 0;
+  std::function<double()> p95_s;       ///< Runs the whole measurement once.
+};
+
+struct Outcome {
+  std::string name, peer;
+  double ours_s = 0, peer_s = 0, ratio = 0, gate = 0, moonshot = 0;   ///< peer_s is the limit for a budget.
+  Accuracy accuracy;
+  bool passed = false;
+};
+
+/// Medians of `repetitions` interleaved runs by Google Benchmark.
+std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repetitions);
+/// The median of three runs.
+Outcome runBudget(const Budget& budget);
+
+void printTable(const std::vector<Outcome>& outcomes, std::ostream& out);
+/// {"benchmarks": [{name, ours_s, peer, peer_s, ratio, gate, moonshot, accuracy, passed}]}, as the verb `bench`.
+std::string toJson(const std::vector<Outcome>& outcomes);
+
+/// The contests of each room.  Empty where they cannot run here; `skipped` then says why, by name.
+std::vector<Contest> stereoContests();
+std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
+std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);
+
+}  // namespace longarm::benchmarks
