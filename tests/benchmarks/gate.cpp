@@ -74,10 +74,14 @@ std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repet
 }
 
 Outcome runBudget(const Budget& budget) {
-  const double p95 = median({budget.p95_s(), budget.p95_s(), budget.p95_s()});
-  Outcome outcome{budget.name, "limit", p95, budget.limit_s, p95 > 0 ? budget.limit_s / p95 : 0, 1, 1,
-                  {true, "95th percentile, wall time"}, false};
-  outcome.passed = p95 > 0 && p95 <= budget.limit_s;
+  std::vector<Latency> runs = {budget.measure(), budget.measure(), budget.measure()};
+  std::sort(runs.begin(), runs.end(), [](const Latency& a, const Latency& b) { return a.wall_p95 < b.wall_p95; });
+  const Latency& l = runs[1];
+  Outcome outcome{budget.name, "limit", l.wall_p95, budget.limit_s, l.wall_p95 > 0 ? budget.limit_s / l.wall_p95 : 0, 1, 1,
+                  {true, "p95 of wall time; median " + seconds(l.wall_median) + ", p95 of the thread's own work " +
+                             seconds(l.work_p95)},
+                  false};
+  outcome.passed = l.wall_p95 > 0 && l.wall_p95 <= budget.limit_s;
   return outcome;
 }
 

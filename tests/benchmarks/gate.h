@@ -27,11 +27,17 @@ struct Contest {
   std::function<Accuracy()> accuracy;
 };
 
+/// Ninety-fifth percentile and median of a latency [s].
+struct Latency {
+  double wall_p95 = 0, wall_median = 0;
+  double work_p95 = 0;                 ///< Processor time of the thread alone: what a busy machine does not add to.
+};
+
 /// A latency that must stay below a limit; has no peer.
 struct Budget {
   std::string name;
   double limit_s = 0;
-  std::function<double()> p95_s;       ///< Runs the whole measurement once.
+  std::function<Latency()> measure;    ///< Runs the whole measurement once.
 };
 
 struct Outcome {
@@ -43,7 +49,7 @@ struct Outcome {
 
 /// Medians of `repetitions` interleaved runs by Google Benchmark.
 std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repetitions);
-/// The median of three runs.
+/// The run with the middle wall time of three.  Wall time is judged, so run it on a machine that is idle otherwise.
 Outcome runBudget(const Budget& budget);
 
 void printTable(const std::vector<Outcome>& outcomes, std::ostream& out);
