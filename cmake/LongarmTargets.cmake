@@ -63,7 +63,8 @@ function(longarm_test name)
   if(arg_LABEL STREQUAL "gl")
     add_test(NAME ${name}
       COMMAND xvfb-run -a -s "-screen 0 1920x1080x24" $<TARGET_FILE:${target}> --gtest_filter=-*Campaign*)
-    set_tests_properties(${name} PROPERTIES LABELS gl TIMEOUT 900
+    # Alone: the window, the robot and software OpenGL share the processor with nobody.
+    set_tests_properties(${name} PROPERTIES LABELS gl TIMEOUT 900 RUN_SERIAL TRUE
       ENVIRONMENT "QT_QPA_PLATFORM=xcb;LIBGL_ALWAYS_SOFTWARE=1")
   else()
     set(environment "")

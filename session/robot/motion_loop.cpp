@@ -57,6 +57,18 @@ Status MotionLoop::checkAtPath(double tau) const {
               formatNumber(m_options.start_tolerance) + "); plan again from where the robot is"};
 }
 
+// Where a motion goes on: at the player's cursor when the arm stands there, else at the arm's own place on the
+// path, for the robot may have braked along it by itself.
+Status MotionLoop::takePlaceOnPath() {
+  const bool halted = m_player.state() == PlayerState::kHalted;
+  const auto at_cursor = halted ? Status() : checkAtPath(m_player.armCursor());
+  if (!halted && at_cursor) return {};
+  const auto here = measured();
+  if (!here) return here.error();
+  const auto resumed = m_player.resumeFrom(*here, m_options.start_tolerance);
+  return resumed || halted ? resumed : at_cursor;
+}
+
 Status MotionLoop::load(const Trajectory& trajectory) {
   std::lock_guard<std::mutex> lock(m_mutex);
   if (isMoving(m_player.state()))
@@ -88,12 +100,8 @@ Status MotionLoop::play() {
   if (m_player.state() == PlayerState::kEmpty) return {ErrorCode::kRefused, "play: no motion is loaded"};
   if (m_gate.stopped()) return {ErrorCode::kRefused, "play: STOP is latched; reset it first"};
   if (m_stop_seen.load()) return {ErrorCode::kRefused, "play: the stop is still being carried out"};
-  if (m_player.state() == PlayerState::kHalted) {
-    const auto here = measured();
-    if (!here) return here.error();
-    if (auto status = m_player.resumeFrom(*here, m_options.start_tolerance); !status) return status;
-  } else if (!isMoving(m_player.state())) {
-    if (auto status = checkAtPath(m_player.armCursor()); !status) return status;
+  if (!isMoving(m_player.state())) {
+    if (auto status = takePlaceOnPath(); !status) return status;
   }
   if (auto status = m_gate.acquire(kOwner); !status) return status;
   m_player.play();

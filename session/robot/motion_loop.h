@@ -23,7 +23,7 @@ struct MotionLoopOptions {
   double start_tolerance = 0.01;  ///< [rad or m]
   double max_state_age_s = 0.2;
   bool gui_watchdog = true;
-  double gui_stop_jog_s = 0.25, gui_stop_motion_s = 0.5;
+  double gui_stop_jog_s = 0.25, gui_stop_motion_s = 0.5, gui_silent_s = 1.2;
   planning::PlayerOptions player;
 };
 
@@ -57,8 +57,9 @@ class MotionLoop {
   MotionState state() const;
 
   void touchGui() { m_gui_s.store(m_clock.now_s()); }
-  /// Whether the window has been alive lately enough to tell the robot so.
-  bool heartbeatAllowed() const { return guiAge() < m_options.gui_stop_jog_s; }
+  /// Whether the window has been alive lately enough to tell the robot so: long enough for the pause that comes
+  /// first to end on the path.
+  bool heartbeatAllowed() const { return guiAge() < m_options.gui_silent_s; }
   /// STOP was pressed: the player halts in the next tick.  Any thread; no lock.
   void noteStop() noexcept { m_stop_seen.store(true); }
 
@@ -68,6 +69,7 @@ class MotionLoop {
  private:
   double guiAge() const;
   Status checkAtPath(double tau) const;
+  Status takePlaceOnPath();
   Result<Eigen::VectorXd> measured() const;
   void watchGui();
   void submit(const Horizon& horizon);

@@ -29,7 +29,8 @@ std::vector<std::string> robotArguments(const RuntimeOptions& options) {
 
 MotionLoopOptions loopOptions(const RuntimeOptions& options) {
   return {options.start_tolerance, options.gate.max_state_age_s, options.gui_watchdog,
-          options.gui_stop_jog_s,  options.gui_stop_motion_s,    options.player};
+          options.gui_stop_jog_s,  options.gui_stop_motion_s,    options.gui_silent_s,
+          options.player};
 }
 
 bool onThisMachine(const std::string& url) { return url.rfind("ws://127.0.0.1:", 0) == 0; }

@@ -67,8 +67,9 @@ struct RuntimeOptions {
   bool stream_cameras = true;                      ///< All cameras at once; false: those that streamCamera() asks for.
   bool lockstep = false;                           ///< No threads, no real time: step() drives everything.
   bool gui_watchdog = true;                        ///< Needs touchGui(); programs without a window switch it off.
-  double gui_stop_jog_s = 0.25;                    ///< Window silent for longer: jog and servo stop, heartbeat pauses.
+  double gui_stop_jog_s = 0.25;                    ///< Window silent for longer: jog and servo stop.
   double gui_stop_motion_s = 0.5;                  ///< Window silent for longer: trajectories pause.
+  double gui_silent_s = 1.2;                       ///< Window silent for longer: the heartbeat ends, the robot brakes by itself.
   double start_tolerance = 0.01;                   ///< Measured joints against a plan's start [rad or m].
   std::string virtual_robot;                       ///< Executable; empty: $LONGARM_VIRTUAL_ROBOT, else beside this one.
   std::function<std::string(const std::string& url)> through;   ///< Puts a proxy in the way; empty: none.

@@ -110,6 +110,27 @@ TEST_F(RuntimeMotion, PlayIsRefusedWhenTheArmWasMovedSinceLoading) {
   EXPECT_EQ(refused.error().code, ErrorCode::kStale);
 }
 
+// The robot braked along the path by itself, e.g. because the heartbeat was late: Play goes on from there.
+TEST_F(RuntimeMotion, PlayGoesOnFromWhereTheArmStandsOnThePath) {
+  start();
+  loadAndPlay();
+  step(2.5);
+  m_runtime->pause();
+  step(0.6);
+  ASSERT_EQ(m_runtime->status().player, PlayerState::kPaused);
+  const double cursor = m_runtime->status().cursor;
+  const auto path = m_runtime->trajectory();
+  const Eigen::VectorXd behind = path.sample(cursor - 0.3).positions - path.sample(cursor).positions;
+  ASSERT_GT(behind.cwiseAbs().maxCoeff(), 0.01) << "far enough to matter";
+  m_arm->setOffset(behind);
+  step(0.1);
+  const auto played = m_runtime->play();
+  ASSERT_TRUE(played.ok()) << played.error().message;
+  EXPECT_NEAR(m_runtime->status().cursor, cursor - 0.3, 0.05);
+  step(0.1);
+  EXPECT_EQ(m_runtime->status().player, PlayerState::kPlaying);
+}
+
 TEST_F(RuntimeMotion, ATrajectoryOfOtherJointsIsRefused) {
   start();
   Trajectory other = motion();
@@ -195,13 +216,15 @@ TEST_F(RuntimeMotion, AWindowThatHangsPausesTheMotionAndEndsTheHeartbeat) {
   EXPECT_EQ(m_runtime->status().player, PlayerState::kPlaying);
   EXPECT_GT(m_alive_until->load(), m_runtime->clock().now_s());
   step(0.45);
-  EXPECT_LT(m_alive_until->load(), m_runtime->clock().now_s());
   EXPECT_EQ(m_runtime->status().player, PlayerState::kPlaying);
   step(0.1);
   EXPECT_EQ(m_runtime->status().player, PlayerState::kPausing);
   EXPECT_NE(m_runtime->status().notice.find("window"), std::string::npos);
   step(0.4);
   EXPECT_EQ(m_runtime->status().player, PlayerState::kPaused);
+  EXPECT_GT(m_alive_until->load(), m_runtime->clock().now_s()) << "the robot needs not brake by itself";
+  step(0.5);
+  EXPECT_LT(m_alive_until->load(), m_runtime->clock().now_s());
   m_runtime->touchGui();
   ASSERT_TRUE(m_runtime->play().ok());
   step(0.2);
