@@ -16,4 +16,4 @@ fi
 say "no display: performing the task under Xvfb; pictures go to $PWD/screenshots"
 mkdir -p screenshots
 export QT_QPA_PLATFORM=xcb LIBGL_ALWAYS_SOFTWARE=1
-exec xvfb-run -a -s "-screen 0 1920x1080x24" "$build/longarm" --scenario grab_pipe --perform --screenshots screenshots "$@"
+exec xvfb-run -a -s "-screen 0 1920x1080x24 -dpi 96" "$build/longarm" --scenario grab_pipe --perform --screenshots screenshots "$@"

@@ -165,7 +165,7 @@ Status Demonstration::takePair() {
   const auto taken = [this] { return m_bench.document().paneSnapshot(PaneSide::kLeft) && m_bench.document().paneSnapshot(PaneSide::kRight); };
   const auto answered = [&] { return taken() || m_bench.snapshots().state() == session::SnapshotController::State::kIdle; };
   // An operator whose pair was refused presses again.
-  for (int tries = 0; tries < 4 && !taken(); ++tries) {
+  for (int tries = 0; tries < 8 && !taken(); ++tries) {
     SimulatedHand::pump(400);
     m_hand.click(button);
     SimulatedHand::waitFor(answered, kPair_s);
@@ -255,24 +255,32 @@ Status Demonstration::release() {
   return SimulatedHand::waitFor(opened, kGrip_s) ? Status() : failed(QStringLiteral("The gripper did not open."));
 }
 
-Status Demonstration::play() {
+// Presses Play as often as it takes: on a busy machine the watchdogs may stop the arm on its way, and when it then
+// stands beside its path the console asks for a new plan.
+bool Demonstration::keepPlaying() {
+  using planning::PlayerState;
   auto* button = m_window.motion()->bar()->playButton();
-  if (!SimulatedHand::waitFor([button] { return button->isEnabled(); }, 5)) {
-    return failed(QStringLiteral("Play is not offered: %1").arg(m_bench.play().state().why_not_play));
+  const auto player = m_bench.robot().status().player;
+  if (player == PlayerState::kDone) return true;
+  if (m_bench.play().state().playing || m_bench.plans().state() == session::PlanController::State::kPlanning) return false;
+  if (m_bench.robot().status().gate.stopped) {
+    (void)m_hand.hold(m_window.stopPanel()->resetButton(), [this] { return !m_bench.robot().status().gate.stopped; }, 5);
+  } else if (m_bench.play().state().stale) {
+    m_hand.click(buttonOf(&m_window, m_window.actions().at(ActionId::kReplan)));
+  } else if (button->isEnabled()) {
+    m_hand.click(button);
   }
-  m_hand.click(button);
-  const auto player = [this] { return m_bench.robot().status().player; };
+  return false;
+}
+
+Status Demonstration::play() {
   const double half = m_bench.document().plan()->plan.trajectory.duration() / 2;
-  const auto over = [&] {
-    // On a busy machine the watchdog may pause the arm: press Play again.
-    if (player() == planning::PlayerState::kPaused && button->isEnabled()) m_hand.click(button);
-    return player() == planning::PlayerState::kDone || player() == planning::PlayerState::kHalted;
-  };
-  const auto midway = [&] { return over() || m_bench.play().state().cursor_s > half; };
-  if (!SimulatedHand::waitFor(midway, kPlay_s)) return failed(QStringLiteral("The arm did not get half way."));
+  bool over = false;
+  const auto midway = [&] { return (over = keepPlaying()) || m_bench.play().state().cursor_s > half; };
+  if (!SimulatedHand::waitFor(midway, kPlay_s)) return failed(QStringLiteral("The arm did not get half way: %1").arg(m_window.strip()->message()));
   if (const Status shown = shoot("playing"); !shown) return shown;
-  if (!SimulatedHand::waitFor(over, kPlay_s) || player() != planning::PlayerState::kDone) {
-    return failed(QStringLiteral("The motion did not end: %1").arg(QString::fromStdString(m_bench.robot().status().notice)));
+  if (!over && !SimulatedHand::waitFor([this] { return keepPlaying(); }, kPlay_s)) {
+    return failed(QStringLiteral("The motion did not end: %1").arg(m_window.strip()->message()));
   }
   return {};
 }

@@ -50,6 +50,7 @@ class Demonstration final {
   Status planGrab();
   Status release();
   Status play();
+  bool keepPlaying();                      ///< @returns whether the motion is done.
   Status grip();
   Status showSizes();
   Status dragHandle(vision::PaneSide side, int vertex, const Eigen::Vector2d& to);

@@ -29,9 +29,11 @@ StopKeys::StopKeys(std::function<bool()> armed, QObject* parent) : QObject(paren
 
 StopKeys::~StopKeys() { qApp->removeEventFilter(this); }
 
-bool StopKeys::isStop(int key) const {
+bool StopKeys::isStop(int key, const QObject* receiver) const {
   if (key == Qt::Key_Pause) return true;
-  return key == Qt::Key_Space && (m_armed() || !takesText(QApplication::focusWidget()));
+  // Keys come to the window first, and then to the widget that has the focus.
+  const auto* widget = qobject_cast<const QWidget*>(receiver);
+  return key == Qt::Key_Space && (m_armed() || !takesText(widget != nullptr ? widget : QApplication::focusWidget()));
 }
 
 bool StopKeys::eventFilter(QObject* watched, QEvent* event) {
@@ -40,7 +42,7 @@ bool StopKeys::eventFilter(QObject* watched, QEvent* event) {
     return QObject::eventFilter(watched, event);
   }
   auto* key = static_cast<QKeyEvent*>(event);
-  if (!isStop(key->key())) return QObject::eventFilter(watched, event);
+  if (!isStop(key->key(), watched)) return QObject::eventFilter(watched, event);
   key->accept();
   // A key held down stops once; its release must not press the button that has the focus.
   if (press && !key->isAutoRepeat()) Q_EMIT stopPressed();

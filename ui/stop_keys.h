@@ -26,7 +26,7 @@ class StopKeys final : public QObject {
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  bool isStop(int key) const;
+  bool isStop(int key, const QObject* receiver) const;
 
   std::function<bool()> m_armed;
 };

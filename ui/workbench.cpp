@@ -32,6 +32,7 @@ void Workbench::connectParts() {
   connect(&m_robot, &RobotSession::polled, this, [this] { m_play.refresh(m_robot.status()); });
   connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
+  connect(&m_snapshots, &session::SnapshotController::stateChanged, this, &Workbench::favourPair);
   connect(&m_plans, &session::PlanController::failed, this, &Workbench::said);
   connect(&m_play, &session::PlayController::failed, this, &Workbench::said);
   connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
@@ -110,6 +111,17 @@ QString Workbench::whyNotTakePair() const {
 void Workbench::takePair() {
   if (const QString why = whyNotTakePair(); !why.isEmpty()) return say(why);
   m_snapshots.takePair(m_pane_cameras[0], m_pane_cameras[1]);
+}
+
+// While a pair is being taken the other cameras are silent: on a slow link or a busy robot each costs it time.
+void Workbench::favourPair() {
+  auto* runtime = m_robot.runtime();
+  if (runtime == nullptr) return;
+  const bool taking = m_snapshots.state() == session::SnapshotController::State::kWaiting;
+  for (const auto& camera : runtime->workcell().cameras) {
+    const QString name = QString::fromStdString(camera.name);
+    if (name != m_pane_cameras[0] && name != m_pane_cameras[1]) (void)runtime->streamCamera(camera.name, !taking);
+  }
 }
 
 QString Workbench::whyNotPlan() const {

@@ -72,6 +72,7 @@ class Workbench final : public QObject {
  private:
   void connectParts();
   void chooseCameras();
+  void favourPair();
 
   session::Document m_document;
   session::EditHistory m_history;

@@ -20,7 +20,7 @@ namespace longarm::widgets {
 namespace {
 
 constexpr int kFrame_ms = 33;
-constexpr int kShareOfTime = 3, kSlowest_ms = 250;
+constexpr int kShareOfTime = 3, kSlowest_ms = 250, kSmoothUpTo_ms = 40;
 constexpr double kClickSlack = 4;              // a press that moves less is a click [screen px]
 
 double distanceToSegment(const QPointF& p, const QPointF& a, const QPointF& b) {
@@ -93,7 +93,10 @@ void SceneView::render() {
   m_vtk->window->Render();
   m_surface->update();
   // Without a graphics card a rendering takes tens of milliseconds on every core: leave as much for the rest.
-  m_rest_ms = std::min<qint64>(kShareOfTime * m_since_render.elapsed(), kSlowest_ms);
+  const qint64 took_ms = m_since_render.elapsed();
+  m_rest_ms = std::min<qint64>(kShareOfTime * took_ms, kSlowest_ms);
+  // Smooth edges cost a software renderer several times the picture; a window that answers matters more.
+  if (took_ms > kSmoothUpTo_ms && m_vtk->window->GetMultiSamples() > 0) m_vtk->window->SetMultiSamples(0);
 }
 
 void SceneView::showEvent(QShowEvent* event) {

@@ -26,10 +26,14 @@ bool same(const PlayState& a, const PlayState& b) {
 PlayController::PlayController(Document& document, PlanController& plans, QObject* parent)
     : QObject(parent), m_document(document), m_plans(plans) {
   m_observer = m_document.observe([this](const Change& change) {
-    if (change.kind == ChangeKind::kPlanChanged) m_cursor = 0;
+    if (change.kind == ChangeKind::kPlanChanged) {
+      m_cursor = 0;
+      m_off_path.clear();
+    }
     forgetOtherPlan();
     rebuild();
   });
+  rebuild();
 }
 
 PlayController::~PlayController() { m_document.unobserve(m_observer); }
@@ -37,6 +41,7 @@ PlayController::~PlayController() { m_document.unobserve(m_observer); }
 void PlayController::setRuntime(RobotRuntime* runtime) {
   m_runtime = runtime;
   m_loaded = {};
+  m_off_path.clear();
   m_status = runtime != nullptr ? runtime->status() : RuntimeStatus();
   rebuild();
 }
@@ -48,7 +53,10 @@ const planning::Plan* PlayController::plan() const {
 
 void PlayController::refresh(const RuntimeStatus& status) {
   m_status = status;
-  if (status.player == PlayerState::kEmpty) m_loaded = {};
+  if (status.player == PlayerState::kEmpty) {
+    m_loaded = {};
+    m_off_path.clear();
+  }
   forgetOtherPlan();
   rebuild();
 }
@@ -70,6 +78,11 @@ QString PlayController::whyNotMove() const {
 }
 
 void PlayController::checkPlan(PlayState& next) const {
+  if (!m_off_path.isEmpty()) {
+    next.stale = true;
+    next.why_not_play = m_off_path;
+    return;
+  }
   const auto joints = m_runtime != nullptr ? m_runtime->jointState() : nullptr;
   if (!joints || next.loaded) return;
   const Status fresh = m_plans.checkFresh(*joints);
@@ -92,7 +105,7 @@ void PlayController::rebuild() {
     next.can_scrub = !next.playing;
     checkPlan(next);
     if (next.why_not_play.isEmpty()) next.why_not_play = whyNotMove();
-    next.why_not_back_up = next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
+    next.why_not_back_up = !m_off_path.isEmpty() ? m_off_path : next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
     if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
       next.why_not_play = tr("The motion is done. Back up, or plan the next one.");
     }
@@ -129,6 +142,8 @@ void PlayController::move(double direction) {
   const double size = std::abs(m_speed) < kSlowest ? 1.0 : std::abs(m_speed);
   setSpeed(direction * size);
   const Status played = m_runtime->play();
+  // The arm was stopped beside the path, by its own watchdog or by hand: only a new plan starts where it is.
+  if (!played && played.error().code == ErrorCode::kStale) m_off_path = QString::fromStdString(played.error().message);
   if (!played) Q_EMIT failed(QString::fromStdString(played.error().message));
   refresh(m_runtime->status());
 }

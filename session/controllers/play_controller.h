@@ -62,6 +62,7 @@ class PlayController final : public QObject {
   PlanController& m_plans;
   RobotRuntime* m_runtime = nullptr;
   RuntimeStatus m_status;
+  QString m_off_path;                                  // Why the loaded plan cannot go on from here; empty: it can.
   PlanId m_loaded;                                     // The plan the runtime holds; invalid: none of ours.
   double m_cursor = 0, m_speed = 1;
   PlayState m_state;
