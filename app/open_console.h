@@ -15,6 +15,7 @@ struct ConsoleArguments {
   std::string workcell;        ///< Empty: the built-in robot.
   std::string scenario;        ///< Training scenario of the virtual robot; empty: grab_pipe.
   std::string variant;         ///< Of the built-in robot: empty or "ptz".
+  std::string views;           ///< A views.yaml whose pictures are opened at the start; empty: none.
   std::string theme;           ///< "dark", "light", empty: as last time.
   std::string screenshots;     ///< Folder for pictures of the demonstration.
   bool perform = false;        ///< The console performs the task by itself, then ends.

@@ -9,6 +9,7 @@ int openConsole(int& argc, char** argv, const ConsoleArguments& arguments) {
   options.workcell = arguments.workcell;
   options.scenario = arguments.scenario.empty() ? "grab_pipe" : arguments.scenario;
   options.variant = arguments.variant;
+  options.views = arguments.views;
   options.theme = arguments.theme;
   options.screenshots = arguments.screenshots;
   options.perform = arguments.perform;

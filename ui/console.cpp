@@ -90,6 +90,9 @@ int runWindow(ConsoleApplication& application, const ConsoleOptions& options) {
   window.show();
   // The window first: what comes next may take seconds.
   QTimer::singleShot(0, &window, [&bench, &options] { bench.openRobot(choiceOf(options)); });
+  if (!options.views.empty()) {
+    QTimer::singleShot(0, &window, [&bench, &options] { bench.snapshots().openViews(QString::fromStdString(options.views)); });
+  }
   if (options.perform) QTimer::singleShot(0, &window, [&window, &options] { perform(window, options); });
   return application.exec();
 }

@@ -11,6 +11,7 @@ struct ConsoleOptions {
   std::string workcell;                    ///< File; empty: the built-in robot.
   std::string scenario = "grab_pipe";      ///< Of the virtual robot: name or file.
   std::string variant;                     ///< Of the built-in robot: empty or "ptz".
+  std::string views;                       ///< A views.yaml whose pictures are opened at the start; empty: none.
   std::string theme;                       ///< "dark", "light", empty: as last time.
   std::string screenshots;                 ///< Folder for the pictures of a demonstration.
   bool perform = false;                    ///< Does the scenario's task in the window unattended, then ends.
