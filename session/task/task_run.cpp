@@ -313,6 +313,11 @@ Result<std::pair<Eigen::Vector3d, Eigen::Vector3d>> TaskRun::pipeEnds(const Task
   return std::pair<Eigen::Vector3d, Eigen::Vector3d>(pose->second.translation() - half, pose->second.translation() + half);
 }
 
+std::size_t TaskRun::contacts() {
+  const auto known = m_runtime ? truth() : Result<TaskTruth>(ErrorCode::kDisconnected, "");
+  return known ? known->contacts.size() : 0;
+}
+
 std::optional<TaskStop> TaskRun::firstStop() const {
   std::lock_guard<std::mutex> lock(m_mutex);
   if (m_stops.empty()) return std::nullopt;

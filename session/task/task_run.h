@@ -36,8 +36,9 @@ class TaskRun {
   /// All stages; the report ends with the first that failed.
   TaskReport run();
 
-  /// The plan that was played, and the truth when it had been: for judges.
+  /// For judges: the plan, once there is one, and how many pairs of bodies have truly touched that must not.
   const std::optional<planning::Plan>& plan() const { return m_plan; }
+  std::size_t contacts();
 
  private:
   StageResult connect();

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -19,7 +20,8 @@ namespace longarm::testing {
 /// Path of longarm-virtual-robot, or empty.
 inline std::string virtualRobot() {
 #ifdef LONGARM_VIRTUAL_ROBOT_PATH
-  const auto found = session::VirtualRobotProcess::find(LONGARM_VIRTUAL_ROBOT_PATH);
+  const bool chosen = std::getenv("LONGARM_VIRTUAL_ROBOT") != nullptr;
+  const auto found = session::VirtualRobotProcess::find(chosen ? "" : LONGARM_VIRTUAL_ROBOT_PATH);
   return found ? *found : std::string();
 #else
   return {};

@@ -65,6 +65,7 @@ struct Connection::Impl final : SocketOwner {
   std::condition_variable call_changed;
   std::map<std::string, Call> calls;
   std::uint64_t call_count = 0;
+  std::atomic<int> calls_waiting{0};
 
   std::atomic<bool> is_up{false}, was_up{false}, knows_dialect{false};
   std::atomic<rosbridge::Dialect> dialect{rosbridge::Dialect::kRos1};
@@ -84,6 +85,7 @@ struct Connection::Impl final : SocketOwner {
   void onClosed(const std::string& why) noexcept override;
   void onFrame(std::string_view bytes, bool binary) noexcept override;
   void onTurn() noexcept override;
+  bool awaitsAnswer() const noexcept override { return calls_waiting > 0; }
 
   void take(const Operation& operation, double received_s);
   void deliver(const rosbridge::Publish& message, double received_s);
@@ -398,6 +400,7 @@ Result<rosbridge::Body> Connection::call(const std::string& service, const rosbr
     if (!connected || !m_impl->is_up) return Error{ErrorCode::kDisconnected, service + ": " + m_impl->down().message};
     id = "call:" + std::to_string(++m_impl->call_count);
     m_impl->calls[id] = {};
+    ++m_impl->calls_waiting;
   }
   const auto posted = m_impl->push(rosbridge::CallService{service, arguments, id}, false);
   std::unique_lock<std::mutex> lock(m_impl->call_mutex);
@@ -405,6 +408,7 @@ Result<rosbridge::Body> Connection::call(const std::string& service, const rosbr
   if (posted) m_impl->call_changed.wait_until(lock, end, [&] { return call.answer.has_value(); });
   auto answer = std::move(call.answer);
   m_impl->calls.erase(id);
+  --m_impl->calls_waiting;
   if (!posted) return Error{posted.error().code, service + ": " + posted.error().message};
   if (!answer) {
     return Error{ErrorCode::kTimeout, service + ": no answer within " + formatNumber(timeout_s) + " s"};

@@ -23,7 +23,7 @@ struct ConnectionSettings {
   std::shared_ptr<std::atomic<double>> alive_until_s;
   double first_retry_s = 0.1, last_retry_s = 2;   ///< Wait before connecting again, doubled from one to the other.
   double connect_timeout_s = 3;
-  double silence_s = 5;                  ///< Neither a message nor an answer to a ping for so long: the link is dead.
+  double silence_s = 5;                  ///< Neither a message nor an answer to a ping for so long, and no call waits: dead.
   double motion_deadline_s = 0.2;        ///< Motion that could not be sent within this is not sent at all.
   std::size_t mailbox = 256;             ///< Messages that may wait to be sent.
   std::size_t max_backlog_bytes = 1u << 20;   ///< More than this unsent: the link is dead.

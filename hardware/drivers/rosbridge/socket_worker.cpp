@@ -154,6 +154,7 @@ void SocketWorker::abandon(const std::string& why) {
 
 void SocketWorker::watch() {
   const double now_s = m_steady.now_s();
+  if (m_owner.awaitsAnswer()) m_heard_s = now_s;
   if (m_connecting && now_s - m_began_s > m_settings.connect_timeout_s) {
     abandon("no answer within " + formatNumber(m_settings.connect_timeout_s) + " s");
   }

@@ -27,6 +27,8 @@ class SocketOwner {
   virtual void onFrame(std::string_view bytes, bool binary) noexcept = 0;
   /// Something waits in the outbox, or some milliseconds have passed.
   virtual void onTurn() noexcept = 0;
+  /// Whether a call waits for its answer: a peer that works on it may be silent, for the caller's patience.
+  virtual bool awaitsAnswer() const noexcept = 0;
 };
 
 /// Lives on its thread, except wake() (any thread).
