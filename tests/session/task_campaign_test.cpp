@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/clock.h"
 #include "core/text.h"
 #include "planning/motion/check_trajectory.h"
 #include "session/task/task_run.h"
