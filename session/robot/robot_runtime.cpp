@@ -14,7 +14,7 @@ namespace longarm::session {
 namespace {
 
 constexpr double kTick_s = 0.02;
-constexpr double kStepAnswer_s = 15;      // A step may take pictures on a busy machine; a robot that is gone is seen at once.
+constexpr double kStepAnswer_s = 60;      // A step may take pictures on a busy machine; a robot that is gone is seen at once.
 constexpr std::size_t kMaxEvents = 1000;  // Waiting for the motion thread; older ones are dropped.
 
 }  // namespace
