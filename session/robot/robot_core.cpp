@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kUpkeepTicks = 5;    // Upkeep at a fifth of the motion rate: 10 Hz.
 constexpr double kAliveAhead_s = 0.15;  // A motion thread that hangs for longer ends the heartbeat.
+constexpr double kStart_s = 30;         // The virtual robot says its address long before on a machine that is not busy.
 constexpr double kLost_s = 1.0;         // Joint states missing for longer: the link counts as lost.
 constexpr double kStill = 0.02;         // Slower than this is standing still [rad/s or m/s].
 // The gate's own cap on tool speed, beyond the planner's at twice its speed.
@@ -79,7 +80,7 @@ RobotCore::~RobotCore() {
 Status RobotCore::startProcess() {
   const auto executable = VirtualRobotProcess::find(m_options.virtual_robot);
   if (!executable) return executable.error();
-  auto process = VirtualRobotProcess::start(*executable, robotArguments(m_options));
+  auto process = VirtualRobotProcess::start(*executable, robotArguments(m_options), kStart_s);
   if (!process) return process.error();
   m_process = std::move(*process);
   m_url = m_process->url();

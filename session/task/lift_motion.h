@@ -14,10 +14,11 @@
 
 namespace longarm::session {
 
-/// Raises the tool straight up with the measured pipe in its fingers, past everything the console knows of.
+/// Raises the tool with the measured pipe in its fingers, past everything the console knows of: straight up, or where
+/// the arm cannot, along a line that leans up to 80 mm to one side.
 /// @param q       Full configuration: the arm holds the pipe.
 /// @param height  [m]
-/// @returns kNoSolution when the arm cannot go up so far, kCollision when something is in the way.
+/// @returns for the straight way: kNoSolution when the arm cannot go so far, kCollision when something is in the way.
 Result<Trajectory> planLift(const planning::Workcell& workcell, const Eigen::VectorXd& q, const vision::Feature& pipe,
                             double radius, double height);
 

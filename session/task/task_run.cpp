@@ -16,7 +16,7 @@ using planning::PlayerState;
 
 constexpr double kTick_s = 0.02;
 constexpr double kGone_s = 4;            // A link that is lost for longer is gone for good.
-constexpr double kConnect_s = 15, kAim_s = 12, kPictures_s = 10, kGripper_s = 6, kReady_s = 3;
+constexpr double kConnect_s = 15, kAim_s = 12, kPictures_s = 30, kGripper_s = 6, kReady_s = 3;
 constexpr double kPlanning_s = 10;
 constexpr double kSettle_s = 0.3;        // between the end of a motion and a picture
 constexpr double kLiftAbove = 0.02;      // more than the goal asks for [m]
@@ -282,35 +282,11 @@ StageResult TaskRun::lift() {
   if (!q) return q.error();
   const double height = liftHeight(m_scenario);
   const auto motion = planLift(*m_workcell, *q, *m_pipe, m_radius, height);
-  if (!motion) return backUp(height);
+  if (!motion) return motion.error();
   if (auto status = m_runtime->load(*motion); !status) return status.error();
   if (auto status = m_runtime->play(); !status) return status.error();
   if (auto status = playLoaded(20 + 3 * motion->duration() / m_options.speed, false); !status) return status.error();
   return "lifted by " + millimetres(height);
-}
-
-// Where the arm cannot go straight up, it goes back the way it came, until the pipe is seen to be high enough.
-StageResult TaskRun::backUp(double height) {
-  const auto heightNow = [this]() -> Result<double> {
-    const auto known = truth();
-    if (!known) return known.error();
-    const auto pose = known->objects.find(m_object);
-    return pose == known->objects.end() ? 0.0 : pose->second.translation().z();
-  };
-  const auto before = heightNow();
-  if (!before) return before.error();
-  m_runtime->setSpeed(-m_options.speed);
-  if (auto status = m_runtime->play(); !status) return status.error();
-  const auto highEnough = [&] {
-    const auto now = heightNow();
-    return !now || *now >= *before + height || m_runtime->status().player != PlayerState::kPlaying;
-  };
-  const double timeout_s = 20 + 3 * m_plan->trajectory.duration() / m_options.speed;
-  if (auto status = waitFor(highEnough, timeout_s, "the pipe was not lifted"); !status) return status.error();
-  m_runtime->pause();
-  const auto rests = [this] { return !m_runtime->status().moving; };
-  if (auto status = waitFor(rests, kReady_s, "the arm did not come to rest"); !status) return status.error();
-  return std::string("lifted by backing up");
 }
 
 StageResult TaskRun::verify() {

@@ -57,7 +57,6 @@ class TaskRun {
   Status waitFor(const std::function<bool()>& condition, double timeout_s, const std::string& what);
   Status pass();
   Status checkRobot();
-  StageResult backUp(double height);
   Status playLoaded(double timeout_s, bool with_faults);
   Result<TaskTruth> truth();
   Result<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pipeEnds(const TaskTruth& truth) const;

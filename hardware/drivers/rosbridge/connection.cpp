@@ -247,9 +247,7 @@ void Connection::Impl::complain(const Error& error) {
   const double now_s = steady.now_s();
   if (now_s - complained_s < kComplaint_s) return;
   complained_s = now_s;
-  for (const auto& [id, listener] : listeners) {
-    if (listener.trouble) listener.trouble(error);
-  }
+  if (!listeners.empty() && listeners.begin()->second.trouble) listeners.begin()->second.trouble(error);
 }
 
 void Connection::Impl::answer(const rosbridge::ServiceResponse& response) {

@@ -39,10 +39,11 @@ class Connection {
   struct Events {
     std::function<void()> up;                         ///< The link stands (again); at once if it does already.
     std::function<void(const Error& why)> down;       ///< It was lost, or could not be made; tried again by itself.
-    std::function<void(const Error& what)> trouble;   ///< The peer sent something that cannot be used.
+    /// The peer sent something that cannot be used; told to the one alone that attached first.
+    std::function<void(const Error& what)> trouble;
     std::function<void(const Error& what)> fault;     ///< The peer does not speak rosbridge.
   };
-  /// `received_s` is on the console's clock.  A failure is reported as trouble of all.
+  /// `received_s` is on the console's clock.  A failure is reported as trouble.
   using Handler = std::function<Status(const rosbridge::Publish& message, double received_s)>;
 
   /// @param clock  outlives the connection
