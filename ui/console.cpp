@@ -29,6 +29,13 @@ void prepareQt() {
   QGuiApplication::setHighDpiScaleFactorRoundingPolicy(Qt::HighDpiScaleFactorRoundingPolicy::PassThrough);
 }
 
+// Qt ends the program without a display, before anybody can catch it.
+bool hasDisplay() {
+  const QByteArray platform = qgetenv("QT_QPA_PLATFORM");
+  if (!platform.isEmpty() && !platform.startsWith("xcb") && !platform.startsWith("wayland")) return true;
+  return !qEnvironmentVariableIsEmpty("DISPLAY") || !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY");
+}
+
 // QApplication sets the locale of the environment; numbers in files and fields have a point in every country.
 void pinLocale() {
   std::setlocale(LC_NUMERIC, "C");
@@ -100,6 +107,10 @@ int runWindow(ConsoleApplication& application, const ConsoleOptions& options) {
 }  // namespace
 
 int runConsole(int& argc, char** argv, const ConsoleOptions& options) {
+  if (!hasDisplay()) {
+    std::fprintf(stderr, "longarm: there is no display (DISPLAY is not set); use a verb (longarm --help), or xvfb-run -a longarm\n");
+    return 2;
+  }
   prepareQt();
   ConsoleApplication application(argc, argv);
   pinLocale();

@@ -63,6 +63,12 @@ TEST(Cli, HelpVersionAndWrongUsage) {
   }
 }
 
+TEST(Cli, WithoutADisplayTheConsoleSaysSoAndEnds) {
+  const auto result = longarm("");
+  EXPECT_EQ(result.exit, 2);
+  EXPECT_NE(result.err.find("display"), std::string::npos) << result.err;
+}
+
 TEST(Cli, CompletionNamesEveryVerb) {
   const auto script = longarm("completion").out;
   for (const char* word : {"target", "epipolar", "undistort", "robot", "plan", "check", "list", "run", "--views"}) {

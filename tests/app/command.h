@@ -34,7 +34,7 @@ inline CommandResult longarm(const std::string& arguments) {
   static int counter = 0;
   const std::string err = testing::TempDir() + "longarm_err_" + std::to_string(::getpid()) + "_" + std::to_string(counter++);
   CommandResult result;
-  FILE* pipe = ::popen(("env -u DISPLAY " LONGARM_BINARY " " + arguments + " 2>" + err).c_str(), "r");
+  FILE* pipe = ::popen(("env -u DISPLAY -u WAYLAND_DISPLAY -u QT_QPA_PLATFORM " LONGARM_BINARY " " + arguments + " 2>" + err).c_str(), "r");
   std::array<char, 4096> buffer{};
   for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) result.out.append(buffer.data(), n);
   const int status = ::pclose(pipe);
