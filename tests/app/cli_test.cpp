@@ -23,7 +23,7 @@ std::string scratch(const std::string& name, const std::string& content) {
 // Two ideal cameras 0.25 m apart, f = 800, looking along x of base_link from 1 m above the ground.
 std::string stereoViews() {
   const std::string camera = scratch("camera.yaml",
-      "image_width: 640\nimage_height: 480\ncamera_name: test\n"
+      "image_width: 640\nimage_height: 1000\ncamera_name: test\n"  // tall: it looks down on what stands near
       "camera_matrix: {rows: 3, cols: 3, data: [800, 0, 320, 0, 800, 240, 0, 0, 1]}\n"
       "distortion_model: plumb_bob\ndistortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n");
   const auto view = [&](const std::string& name, double y) {
