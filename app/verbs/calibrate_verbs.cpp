@@ -77,6 +77,9 @@ void addCalibrateVerbs(Cli& cli) {
   addIntrinsicsVerb(cli, *calibrate);
   addFixtureVerb(cli, *calibrate);
   addPoseVerb(cli, *calibrate);
+  addStereoVerb(cli, *calibrate);
+  addZoomVerb(cli, *calibrate);
+  addCompareVerb(cli, *calibrate);
 }
 
 }  // namespace longarm::app

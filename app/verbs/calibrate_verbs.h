@@ -19,8 +19,9 @@ namespace longarm::app {
 void addIntrinsicsVerb(Cli& cli, CLI::App& calibrate);
 void addFixtureVerb(Cli& cli, CLI::App& calibrate);
 void addPoseVerb(Cli& cli, CLI::App& calibrate);
-
-
+void addStereoVerb(Cli& cli, CLI::App& calibrate);
+void addZoomVerb(Cli& cli, CLI::App& calibrate);
+void addCompareVerb(Cli& cli, CLI::App& calibrate);
 
 /// {"fx": 1.2, ...}: square roots of the diagonal, of the estimated parameters only.
 nlohmann::json lensSigmaJson(const Eigen::MatrixXd& covariance, const calibration::LensMask& estimated);

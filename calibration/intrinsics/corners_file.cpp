@@ -1,5 +1,6 @@
 #include "calibration/intrinsics/corners_file.h"
 
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -10,6 +11,7 @@ namespace longarm::calibration {
 namespace {
 
 constexpr std::size_t kMaxBytes = 64u << 20;
+constexpr double kFarthest = 1e6;
 const std::vector<std::string> kCornerColumns = {"view", "x", "y", "z", "u", "v"};
 const std::vector<std::string> kPointColumns = {"x", "y", "z", "u", "v"};
 
@@ -20,6 +22,10 @@ Result<Corner> cornerOf(const std::string& file, const CsvRow& row, const std::v
   for (std::size_t i = 0; i < 5; ++i) {
     const auto number = cellNumber(file, row, columns, first + i);
     if (!number) return number.error();
+    if (std::abs(*number) > kFarthest) {
+      return Error{ErrorCode::kInvalidInput, file + ": line " + std::to_string(row.line) + ": column " + columns[first + i] + ": " +
+                                                 formatNumber(*number) + " is beyond 1e6 (metres for x,y,z, pixels for u,v)"};
+    }
     values[i] = *number;
   }
   return Corner{{values[0], values[1], values[2]}, {values[3], values[4]}, row.line};

@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxDepth = 64;
+constexpr double kFarthest = 1e6;
 constexpr std::size_t kMaxBytes = 64u << 20;
 const char* const kKeys[3] = {"T_ext", "T_dev", "T_obj"};
 
@@ -44,6 +45,9 @@ Result<LoopPoint> pointFrom(const json& value, const std::string& where) {
   const auto u = numberAt(value, "u", where), v = numberAt(value, "v", where);
   if (!u) return u.error();
   if (!v) return v.error();
+  for (const double number : {(*xyz)[0], (*xyz)[1], (*xyz)[2], *u, *v}) {
+    if (std::abs(number) > kFarthest) return bad(where + ": " + formatNumber(number) + " is beyond 1e6 (metres for xyz, pixels for u and v)");
+  }
   LoopPoint point{{(*xyz)[0], (*xyz)[1], (*xyz)[2]}, {*u, *v}, 0};
   if (value.contains("sigma_m")) {
     const auto sigma = numberAt(value, "sigma_m", where);
