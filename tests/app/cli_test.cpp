@@ -9,10 +9,10 @@
 
 #include "core/text.h"
 #include "tests/app/command.h"
+#include "tests/support/test_data.h"
 #include "tests/vision/painted_wall.h"
 #include "vision/snapshot/image_file.h"
 #include "vision/snapshot/views_file.h"
-#include "tests/support/test_data.h"
 
 namespace longarm::tests {
 namespace {
@@ -128,7 +128,7 @@ std::string wallViews(bool painted) {
     seen.X_WC = Pose::Identity();
     seen.X_WC.translation().x() = entry.view.name == "left" ? 0 : 0.25;
     const std::string path = testing::TempDir() + "wall_" + entry.view.name + "_" + std::to_string(::getpid()) + ".png";
-    const cv::Mat flat(480, 640, CV_8UC1, cv::Scalar(90));
+    const cv::Mat flat(1000, 640, CV_8UC1, cv::Scalar(90));
     EXPECT_TRUE(vision::saveImage(path, painted ? wall.seenBy(seen, nullptr, 1, 0) : flat).ok());
     const std::string key = "name: " + entry.view.name + "\n";
     text.replace(text.find(key), key.size(), key + "    image: " + path + "\n");

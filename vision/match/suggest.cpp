@@ -21,7 +21,9 @@ constexpr double kOffCurve = 1.5;           // [px] that calibrations are usuall
 constexpr double kCoreShift = 0.6;          // [px] more than this and it belongs to another surface
 constexpr int kHalfSide = 5;                // [px]
 constexpr double kSideDistance = 6;         // [px] from the pick to the middle of a side
-constexpr double kSideShift = 0.5;          // [px] more than this and the patch shows two surfaces
+constexpr double kSideShift = 0.8;          // [px] more than this and the patch shows two surfaces
+constexpr double kSlope = 0.45;             // stretch and shear that surfaces seldom have
+constexpr double kMisfit = 30;              // times the noise that patches of one surface seldom differ by
 constexpr double kMaxSideShift = 3;         // [px]
 constexpr double kSame = 1.5;               // [px] refined matches nearer than this are one
 /// Two patches that differ by less than this cannot be told apart by their likeness (sampling alone makes as much).
@@ -193,7 +195,8 @@ double disagreementOfSides(const Candidate& candidate, const Pair& pair) {
 double scoreOf(const RefinedMatch& match, double ambiguity) {
   const double likeness = logistic(match.zncc, 0.75, 0.05), alone = logistic(1 / std::max(1e-3, ambiguity), 1.5, 0.2);
   const double texture = logistic(match.texture, 1.8, 0.2) * logistic(-match.sigma_along, -0.3, 0.05);
-  return likeness * alone * texture * std::exp(-0.5 * std::pow(match.off_curve / kOffCurve, 2));
+  const double plausible = std::exp(-std::pow(match.slope.cwiseAbs().maxCoeff() / kSlope, 2) - std::pow(match.misfit / kMisfit, 2));
+  return likeness * alone * texture * plausible * std::exp(-0.5 * std::pow(match.off_curve / kOffCurve, 2));
 }
 
 }  // namespace
