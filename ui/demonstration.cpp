@@ -297,7 +297,18 @@ Status Demonstration::grip() {
   if (now->held != kPipe) return failed(QStringLiteral("The gripper holds \"%1\", not the pipe.").arg(QString::fromStdString(now->held)));
   m_hand.click(buttonOf(&m_window, m_window.actions().at(ActionId::kSceneReset)));
   for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) m_hand.click(m_window.pictures()->pane(side)->liveButton());
-  SimulatedHand::pump(900);
+  // Live pictures of after the grip, which a busy machine takes its time over.
+  const double gripped_s = m_bench.robot().runtime()->clock().now_s();
+  const auto fresh = [this, gripped_s] {
+    const double now_s = m_bench.robot().runtime()->clock().now_s();
+    for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+      const auto age = m_bench.live().age(m_bench.paneCamera(side));
+      if (!age || now_s - *age < gripped_s) return false;
+    }
+    return true;
+  };
+  SimulatedHand::waitFor(fresh, kPair_s);
+  SimulatedHand::pump(500);
   return shoot("gripped");
 }
 

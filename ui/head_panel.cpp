@@ -104,7 +104,7 @@ void HeadPanel::refresh() {
     m_gripper->setText(tr("gripper unknown"));
   } else {
     const QString opening = QString::number(1000 * runtime->gripperPosition(), 'f', 0);
-    m_gripper->setText(runtime->holding() ? tr("HOLDING (finger at %1 mm)").arg(opening) : tr("finger at %1 mm").arg(opening));
+    m_gripper->setText(runtime->holding() ? tr("HOLDING, at %1 mm").arg(opening) : tr("finger at %1 mm").arg(opening));
   }
 }
 

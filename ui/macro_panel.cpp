@@ -47,6 +47,7 @@ MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearanc
   column->addWidget(m_target);
   m_grid = new QGridLayout;
   m_grid->setSpacing(5);
+  for (int i = 0; i < kColumns; ++i) m_grid->setColumnStretch(i, 1);
   column->addLayout(m_grid);
   m_outcome = new QLabel(this);
   m_outcome->setTextFormat(Qt::PlainText);

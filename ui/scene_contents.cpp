@@ -1,5 +1,7 @@
 #include "ui/scene_contents.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace longarm::ui {
@@ -7,6 +9,7 @@ namespace longarm::ui {
 namespace {
 
 constexpr double kGhost = 0.35;
+constexpr double kSeparate = 0.05;         // A ghost nearer to the robot than this is not drawn [rad or m].
 constexpr double kVisible = 5e-4;          // Smaller joint changes are encoder noise [rad or m].
 constexpr double kAroundSelection_m = 0.25;
 
@@ -64,6 +67,7 @@ bool SceneContents::setJoints(const JointState* joints) {
   std::map<std::string, Pose> poses;
   for (std::size_t i = 0; i < model.links().size(); ++i) poses[model.links()[i].name] = X_WL[i];
   m_world->update(m_workcell->objects, poses);
+  refreshGhost();
   return true;
 }
 
@@ -83,15 +87,35 @@ void SceneContents::setSketch(const session::Document& document) {
 
 void SceneContents::setPlan(const session::Document& document) {
   if (!m_plan) return;
+  m_trajectory = {};
   if (document.plan()) {
     m_plan->update(document.plan()->plan);
+    m_trajectory = document.plan()->plan.trajectory;
   } else {
     m_plan->clear();
   }
+  refreshGhost();
 }
 
 void SceneContents::setCursor(double t_s) {
-  if (m_plan) m_plan->scrub(t_s);
+  m_cursor_s = t_s;
+  if (!m_plan) return;
+  m_plan->scrub(t_s);
+  refreshGhost();
+}
+
+// Two robots in one place would flicker through each other.
+void SceneContents::refreshGhost() {
+  if (!m_plan || m_trajectory.empty()) return;
+  const auto& names = m_workcell->model->actuatedNames();
+  const Eigen::VectorXd there = m_trajectory.sample(m_cursor_s).positions;
+  double apart = 0;
+  for (std::size_t i = 0; i < m_trajectory.joint_names.size(); ++i) {
+    const auto found = std::find(names.begin(), names.end(), m_trajectory.joint_names[i]);
+    if (found == names.end() || m_drawn.size() == 0) continue;
+    apart = std::max(apart, std::abs(there(static_cast<Eigen::Index>(i)) - m_drawn(found - names.begin())));
+  }
+  m_plan->setGhostVisible(apart > kSeparate);
 }
 
 void SceneContents::setPicture(vision::PaneSide side, const std::optional<vision::View>& view, const cv::Mat& picture) {

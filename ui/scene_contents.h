@@ -34,6 +34,7 @@ class SceneContents final {
   bool setJoints(const JointState* joints);
   void setSketch(const session::Document& document);
   void setPlan(const session::Document& document);
+  /// Shows the ghost there, unless the robot itself stands there.
   void setCursor(double t_s);
   void setPicture(vision::PaneSide side, const std::optional<vision::View>& view, const cv::Mat& picture);
   void setOpacity(double opacity);
@@ -44,6 +45,8 @@ class SceneContents final {
   std::vector<widgets::Pickable> pickables(const session::Document& document) const;
 
  private:
+  void refreshGhost();
+
   vtkRenderer* m_renderer;
   std::shared_ptr<const planning::Workcell> m_workcell;
   std::unique_ptr<scene::RobotRep> m_robot;
@@ -56,6 +59,8 @@ class SceneContents final {
   double m_opacity = 0.8;
   bool m_ghost = false;
   Eigen::VectorXd m_drawn;                 // Configuration drawn; empty: none yet.
+  Trajectory m_trajectory;                 // Of the plan shown; empty: none.
+  double m_cursor_s = 0;
 };
 
 }  // namespace longarm::ui

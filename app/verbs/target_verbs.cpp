@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "vision/camera/camera_file.h"
 #include "vision/camera/undistort.h"
+#include "vision/match/suggest.h"
 #include "vision/snapshot/image_file.h"
 #include "vision/snapshot/views_file.h"
 #include "vision/stereo/epipolar.h"
@@ -16,6 +17,7 @@ struct TargetOptions {
 
 struct EpipolarVerbOptions {
   std::string views, from, to, pixel, depth;
+  bool suggest = false;
 };
 
 struct UndistortOptions {
@@ -91,6 +93,50 @@ Result<const vision::View*> viewOption(const vision::ViewSet& views, const std::
   return Error{ErrorCode::kInvalidInput, option + ": there is no view \"" + name + "\"; the file has " + names};
 }
 
+Result<vision::MatchPicture> pictureOf(const vision::ViewSet& views, const vision::View& view) {
+  for (const auto& entry : views.entries) {
+    if (&entry.view != &view) continue;
+    if (entry.image.empty()) {
+      return Error{ErrorCode::kInvalidInput, "--suggest: view \"" + view.name + "\" has no picture; add `image:` to the views file"};
+    }
+    const auto image = vision::loadImage(entry.image);
+    if (!image) return image.error();
+    auto picture = vision::MatchPicture::from(*image);
+    if (!picture) return Error{picture.error().code, entry.image + ": " + picture.error().message};
+    return picture;
+  }
+  return Error{ErrorCode::kInternal, "view \"" + view.name + "\" is not of this file"};
+}
+
+// Adds `matches` to the answer: where the pick's neighbourhood is seen again.
+Result<Answer> addMatches(const vision::ViewSet& views, const vision::View& from, const Eigen::Vector2d& pixel, const vision::View& to,
+                          const vision::EpipolarOptions& epipolar, Answer answer) {
+  const auto from_picture = pictureOf(views, from);
+  if (!from_picture) return from_picture.error();
+  const auto to_picture = pictureOf(views, to);
+  if (!to_picture) return to_picture.error();
+  vision::MatchOptions options;
+  options.min_depth = epipolar.min_depth;
+  options.max_depth = epipolar.max_depth;
+  const auto matches = vision::suggestMatches(from, *from_picture, pixel, to, *to_picture, options);
+  if (!matches) return matches.error();
+  answer.json["matches"] = nlohmann::json::array();
+  std::vector<std::vector<std::string>> rows = {{"match u px", "v px", "depth m", "score", "ambiguity"}};
+  for (const auto& m : *matches) {
+    const auto& c = m.covariance;
+    answer.json["matches"].push_back({{"u", m.pixel.x()}, {"v", m.pixel.y()}, {"depth", m.depth}, {"score", m.score},
+                                      {"ambiguity", m.ambiguity}, {"covariance_px", {c(0, 0), c(0, 1), c(1, 0), c(1, 1)}}});
+    rows.push_back({formatFixed(m.pixel.x(), 2), formatFixed(m.pixel.y(), 2), formatFixed(m.depth, 3), formatFixed(m.score, 2),
+                    formatFixed(m.ambiguity, 2)});
+  }
+  if (matches->empty()) {
+    return noSolution(answer.json, "no_match", "nothing along the curve in " + to.name +
+                                                   " looks like the pick: it has no texture, or is hidden there; pick by hand");
+  }
+  answer.table += tableText(rows);
+  return answer;
+}
+
 Result<Answer> runEpipolar(const EpipolarVerbOptions& options) {
   const auto views = vision::readViewsFile(options.views);
   if (!views) return views.error();
@@ -121,10 +167,13 @@ Result<Answer> runEpipolar(const EpipolarVerbOptions& options) {
     rows.push_back({formatFixed(p.pixel.x(), 2), formatFixed(p.pixel.y(), 2), formatFixed(p.depth, 3)});
   }
   if (curve->points.empty()) {
+    if (options.suggest) json["matches"] = nlohmann::json::array();
     return noSolution(json, "not_visible", "no point of this pixel's ray between " + formatNumber(epipolar.min_depth) + " m and " +
                                                formatNumber(epipolar.max_depth) + " m is seen by " + options.to);
   }
-  return Answer{json, tableText(rows), kExitDone};
+  Answer answer{json, tableText(rows), kExitDone};
+  if (!options.suggest) return answer;
+  return addMatches(*views, **from, pixel->head<2>(), **to, epipolar, std::move(answer));
 }
 
 Result<Answer> runUndistort(const UndistortOptions& options) {
@@ -162,6 +211,7 @@ void addTargetVerbs(Cli& cli) {
         verb.add_option("--pixel", options.pixel, "The pick, u,v in raw pixels")->required();
         verb.add_option("--to", options.to, "View that the curve is wanted in")->required();
         verb.add_option("--depth", options.depth, "Nearest and farthest depth in the first camera, min,max in metres (default 0.15,20)");
+        verb.add_flag("--suggest", options.suggest, "Look for the pick's neighbourhood along the curve (the views need pictures)");
       },
       runEpipolar);
   cli.addVerb<UndistortOptions>(

@@ -10,6 +10,9 @@
 #include "core/text.h"
 #include "tests/app/command.h"
 #include "tests/support/test_data.h"
+#include "tests/vision/painted_wall.h"
+#include "vision/snapshot/image_file.h"
+#include "vision/snapshot/views_file.h"
 
 namespace longarm::tests {
 namespace {
@@ -89,6 +92,72 @@ TEST(Cli, TargetMeasuresPointsAndLines) {
   EXPECT_NEAR(pipe["vertices"][0]["xyz"][0].get<double>(), 0.75, 1e-9);
   EXPECT_EQ(pipe["vertices"][0]["covariance"].size(), 9u);
   EXPECT_NEAR(json["features"][1]["vertices"][0]["xyz"][2].get<double>(), 0.8, 1e-9);
+}
+
+TEST(Cli, TargetMeasuresPlanesAndBoxes) {
+  std::string rows = "feature,kind,vertex,view,u,v\n";
+  rows += pick("panel", "plane", 0, 1, 0.2, 0.9) + pick("panel", "plane", 1, 1, -0.1, 0.9) + pick("panel", "plane", 2, 1, -0.1, 1.1);
+  const double slope = std::sqrt(0.5);   // a crate turned by 45 degrees about the vertical, seen from above its corner
+  rows += pick("crate", "triad", 0, 1, 0, 0.9) + pick("crate", "triad", 1, 1 + 0.3 * slope, -0.3 * slope, 0.9) +
+          pick("crate", "triad", 2, 1 + 0.2 * slope, 0.2 * slope, 0.9) + pick("crate", "triad", 3, 1, 0, 1.05);
+  rows += pick("thin", "plane", 0, 1, 0.2, 0.9) + pick("thin", "plane", 1, 1, 0, 0.9) + pick("thin", "plane", 2, 1, -0.2, 0.9);
+  const auto result = longarm("target --views " + stereoViews() + " --picks " + scratch("shapes.csv", rows) + " --json");
+  ASSERT_EQ(result.exit, 0) << result.err;
+  const auto json = result.json();
+  const auto& panel = json["features"][0];
+  EXPECT_NEAR(panel["normal"][0].get<double>(), -1, 1e-9) << "towards the cameras";
+  EXPECT_EQ(panel["corners"].size(), 4u);
+  EXPECT_NEAR(panel["center"][1].get<double>(), 0.05, 1e-9);
+  EXPECT_GT(panel["angle_error_deg"].get<double>(), 0);
+  const auto& crate = json["features"][1];
+  const std::vector<double> wanted = {0.3, 0.2, 0.15};
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(crate["box"]["size"][i].get<double>(), wanted[i], 1e-9) << i;
+  EXPECT_EQ(crate["box"]["pose"]["parent"], "base_link");
+  EXPECT_NEAR(crate["orthogonality_error_deg"].get<double>(), 0, 1e-6);
+  EXPECT_EQ(json["features"][2]["status"], "degenerate") << "a plane of three points in line keeps its reason";
+  EXPECT_TRUE(json["features"][2].contains("reason"));
+}
+
+// The two views above with pictures of a painted wall in them, or with grey ones.
+std::string wallViews(bool painted) {
+  vision::ViewSet views = *vision::readViewsFile(stereoViews());
+  const auto wall = PaintedWall::textured(5);
+  std::string text = slurp(stereoViews());
+  for (auto& entry : views.entries) {
+    vision::View seen = entry.view;   // the wall stands before a head that looks along z
+    seen.X_WC = Pose::Identity();
+    seen.X_WC.translation().x() = entry.view.name == "left" ? 0 : 0.25;
+    const std::string path = testing::TempDir() + "wall_" + entry.view.name + "_" + std::to_string(::getpid()) + ".png";
+    const cv::Mat flat(1000, 640, CV_8UC1, cv::Scalar(90));
+    EXPECT_TRUE(vision::saveImage(path, painted ? wall.seenBy(seen, nullptr, 1, 0) : flat).ok());
+    const std::string key = "name: " + entry.view.name + "\n";
+    text.replace(text.find(key), key.size(), key + "    image: " + path + "\n");
+  }
+  return scratch(painted ? "wall.yaml" : "flat.yaml", text);
+}
+
+TEST(Cli, EpipolarSuggestsTheMatchOrSaysThereIsNone) {
+  vision::View left;
+  left.camera = pinhole();
+  vision::View right = left;
+  right.X_WC.translation().x() = 0.25;
+  const Eigen::Vector3d p = PaintedWall::textured(5).at(0.05, 0.02);
+  const Eigen::Vector2d a = left.project(p).value(), b = right.project(p).value();
+  const std::string command = "epipolar --from left --to right --depth 0.5,5 --suggest --json --pixel " + formatNumber(a.x()) + "," + formatNumber(a.y());
+  const auto found = longarm(command + " --views " + wallViews(true));
+  ASSERT_EQ(found.exit, 0) << found.err << found.out;
+  const auto best = found.json()["matches"][0];
+  EXPECT_NEAR(best["u"].get<double>(), b.x(), 0.2);
+  EXPECT_NEAR(best["v"].get<double>(), b.y(), 0.2);
+  EXPECT_NEAR(best["depth"].get<double>(), p.z(), 0.01);
+  EXPECT_GT(best["score"].get<double>(), 0.6);
+  EXPECT_LT(best["ambiguity"].get<double>(), 0.5);
+  const auto none = longarm(command + " --views " + wallViews(false));
+  EXPECT_EQ(none.exit, 4);
+  EXPECT_TRUE(none.json()["matches"].is_array() && none.json()["matches"].empty()) << none.out;
+  const auto no_pictures = longarm(command + " --views " + stereoViews());
+  EXPECT_EQ(no_pictures.exit, 3);
+  EXPECT_NE(no_pictures.err.find("no picture"), std::string::npos) << no_pictures.err;
 }
 
 TEST(Cli, BadInputExitsThreeAndNamesThePlace) {
