@@ -26,6 +26,8 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kToolSelect, "Sketch", "&Select", "tool-select", "A", "Select, drag and nudge features", true},
       {I::kToolPoint, "Sketch", "&Point", "tool-point", "D", "Mark a point in both pictures", true},
       {I::kToolLine, "Sketch", "&Line", "tool-line", "N", "Mark the two ends of a line in both pictures", true},
+      {I::kToolPlane, "Sketch", "Pla&ne", "tool-plane", "W", "Mark three corners of a flat face in both pictures", true},
+      {I::kToolTriad, "Sketch", "&Triad (box)", "tool-triad", "X", "Mark a box's corner and the ends of its three edges in both pictures", true},
 
       {I::kLiveBoth, "View", "&Live pictures", "", "V", "Switch both panes between live pictures and snapshots", true},
       {I::kFitPictures, "View", "&Fit pictures", "view-fit", "Ctrl+0", "Show both pictures whole"},

@@ -17,7 +17,7 @@ namespace longarm::ui {
 enum class ActionId {
   kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kQuit,
   kUndo, kRedo, kDelete, kRename, kDuplicate, kHide, kLock, kSelectAll, kCancel,
-  kToolSelect, kToolPoint, kToolLine,
+  kToolSelect, kToolPoint, kToolLine, kToolPlane, kToolTriad,
   kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,
   kMoreOpaque, kLessOpaque, kTheme, kResetLayout,

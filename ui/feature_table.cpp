@@ -53,7 +53,7 @@ QString FeatureTable::tip(const session::FeatureRow& row, int column) const {
 QVariant FeatureTable::mark(const session::FeatureRow& row, int column) const {
   const auto& theme = m_appearance.theme();
   if (column == kName) {
-    return widgets::icon(row.kind == vision::FeatureKind::kPoint ? QStringLiteral("tool-point") : QStringLiteral("tool-line"), theme);
+    return widgets::icon(QStringLiteral("tool-") + QString::fromLatin1(vision::toString(row.kind)), theme);
   }
   if (column == kShown) return widgets::icon(row.hidden ? QStringLiteral("feature-hide") : QStringLiteral("feature-show"), theme);
   if (column == kLocked) return widgets::icon(row.locked ? QStringLiteral("feature-lock") : QStringLiteral("feature-unlock"), theme);

@@ -1,11 +1,23 @@
 #include "ui/sketch_actions.h"
 
+#include <utility>
+
 #include <QActionGroup>
 
 namespace longarm::ui {
 
 using session::TargetingController;
 using session::ToolKind;
+
+namespace {
+
+constexpr std::pair<ActionId, ToolKind> kTools[] = {{ActionId::kToolSelect, ToolKind::kSelect},
+                                                    {ActionId::kToolPoint, ToolKind::kPoint},
+                                                    {ActionId::kToolLine, ToolKind::kLine},
+                                                    {ActionId::kToolPlane, ToolKind::kPlane},
+                                                    {ActionId::kToolTriad, ToolKind::kTriad}};
+
+}  // namespace
 
 SketchActions::SketchActions(TargetingController& targeting, Actions& actions, QObject* parent)
     : QObject(parent), m_targeting(targeting), m_actions(actions) {
@@ -40,8 +52,7 @@ void SketchActions::bind() {
     if (item != nullptr) toggle(&TargetingController::setLocked, item->locked);
   });
   auto* group = new QActionGroup(this);
-  for (const auto& [id, kind] : {std::pair{ActionId::kToolSelect, ToolKind::kSelect}, std::pair{ActionId::kToolPoint, ToolKind::kPoint},
-                                 std::pair{ActionId::kToolLine, ToolKind::kLine}}) {
+  for (const auto& [id, kind] : kTools) {
     group->addAction(m_actions.at(id));
     on(id, [this, tool = kind] { m_targeting.setTool(tool); });
   }
@@ -77,8 +88,7 @@ void SketchActions::refreshSelection() {
 }
 
 void SketchActions::refreshTools() {
-  for (const auto& [id, kind] : {std::pair{ActionId::kToolSelect, ToolKind::kSelect}, std::pair{ActionId::kToolPoint, ToolKind::kPoint},
-                                 std::pair{ActionId::kToolLine, ToolKind::kLine}}) {
+  for (const auto& [id, kind] : kTools) {
     m_actions.setWhyNot(id, m_targeting.whyNotTool(kind));
     m_actions.at(id)->setChecked(m_targeting.tool() == kind);
   }

@@ -25,6 +25,10 @@ void fillTexts(FeatureRow& row) {
   row.plus_minus_text = formatFixed(row.plus_minus * 1000, 1);
   row.miss_text = formatFixed(row.miss * 1000, 1);
   if (row.length) row.length_text = millimetreText(*row.length, *row.length_plus_minus);
+  if (row.size) {
+    const auto mm = [&](int axis) { return formatFixed((*row.size)[axis] * 1000, 0); };
+    row.length_text = mm(0) + " \u00d7 " + mm(1) + " \u00d7 " + millimetreText((*row.size)[2], 0);
+  }
 }
 
 /// Covariance of the feature's middle: of its only vertex, or of the mean of the ends with what they share.
@@ -55,6 +59,12 @@ void fillNumbers(FeatureRow& row, const vision::Feature& feature) {
     row.length = feature.length();
     row.length_plus_minus = plusMinus95(feature.lengthSigma());
   }
+  if (feature.box) {
+    row.size = feature.box->size;
+    row.xyz = feature.box->X_WB.translation();
+    row.sigma = feature.box->covariance.diagonal().head<3>().cwiseMax(0).cwiseSqrt();
+  }
+  if (feature.plane) row.xyz = feature.plane->center;
 }
 
 }  // namespace

@@ -20,13 +20,14 @@ struct FeatureRow {
   std::optional<std::uint32_t> colour;
   bool measured = false;
   std::string reason;                          ///< Why it is not measured: what to do.
-  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();   ///< Point, or middle of a line [m].
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();   ///< Point, or middle of a line, plane or box [m].
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero(); ///< 1 sigma per axis [m].
   double plus_minus = 0;                       ///< 95 % along the worst axis of a vertex [m].
   std::optional<double> length, length_plus_minus;   ///< Lines only; +- is 95 % [m].
+  std::optional<Eigen::Vector3d> size;         ///< Boxes only [m].
   double miss = 0;                             ///< Largest of its vertices [m].
   std::vector<std::string> warnings;
-  std::string xyz_text, plus_minus_text, length_text, miss_text;
+  std::string xyz_text, plus_minus_text, length_text, miss_text;   ///< A box's length is its size.
 };
 
 FeatureRow featureRow(const SketchItem& item, const Measurement& measurement);

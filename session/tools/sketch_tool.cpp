@@ -1,8 +1,10 @@
 #include "session/tools/sketch_tool.h"
 
 #include "session/tools/line_tool.h"
+#include "session/tools/plane_tool.h"
 #include "session/tools/point_tool.h"
 #include "session/tools/select_tool.h"
+#include "session/tools/triad_tool.h"
 
 namespace longarm::session {
 
@@ -11,6 +13,8 @@ std::unique_ptr<SketchTool> makeTool(ToolKind kind) {
     case ToolKind::kSelect: return std::make_unique<SelectTool>();
     case ToolKind::kPoint: return std::make_unique<PointTool>();
     case ToolKind::kLine: return std::make_unique<LineTool>();
+    case ToolKind::kPlane: return std::make_unique<PlaneTool>();
+    case ToolKind::kTriad: return std::make_unique<TriadTool>();
   }
   return std::make_unique<SelectTool>();
 }

@@ -13,7 +13,7 @@
 
 namespace longarm::session {
 
-enum class ToolKind { kSelect, kPoint, kLine };
+enum class ToolKind { kSelect, kPoint, kLine, kPlane, kTriad };
 
 /// One vertex of one item in one picture.
 struct Handle {
