@@ -69,7 +69,7 @@ std::string cornersCsv(double first_of_v3_off_px = 0) {
 std::string fixtureCsv(bool flat = false, bool upwards = false) {
   std::string csv = "x,y,z,u,v\r\n";
   const Pose X = pose({0.15, -0.2, 0.05}, {0.02, -0.03, 1.2});
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < (flat ? 20 : 60); ++i) {
     const Eigen::Vector3d x(-0.3 + 0.1 * (i % 5), -0.2 + 0.1 * ((i / 5) % 4), flat ? 0 : 0.15 * (i / 20));
     Eigen::Vector2d u = project(X * x);
     if (upwards) u.y() = 479 - u.y();
