@@ -30,10 +30,10 @@ endfunction()
 
 # longarm_test(vision SOURCES a_test.cpp .. LINK longarm::vision [LABEL unit|gui|gl] [QT] [PCH header ..])
 # One executable; unit and gui tests are registered case by case, gl tests as one run under Xvfb.
-# Campaigns are cases whose suite name ends in "Campaign": they carry the label "campaign", are left out of the
-# default run and are started with:  ctest -L campaign  (or the executable with --gtest_filter='*Campaign*').
+# Campaigns are cases whose suite name ends in "Campaign": they are left out of the
+# default run and are started by the executable with --gtest_filter='*Campaign*'.  SERIAL: real time, runs alone.
 function(longarm_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "QT" "LABEL;TIMEOUT" "SOURCES;LINK;PCH")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "QT;SERIAL" "LABEL;TIMEOUT" "SOURCES;LINK;PCH")
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
@@ -68,8 +68,11 @@ function(longarm_test name)
       ENVIRONMENT "QT_QPA_PLATFORM=xcb;LIBGL_ALWAYS_SOFTWARE=1")
   else()
     set(environment "")
+    if(arg_SERIAL)
+      list(APPEND environment RUN_SERIAL TRUE)
+    endif()
     if(arg_LABEL STREQUAL "gui")
-      set(environment ENVIRONMENT QT_QPA_PLATFORM=offscreen)
+      list(APPEND environment ENVIRONMENT QT_QPA_PLATFORM=offscreen)
     endif()
     include(GoogleTest)
     gtest_discover_tests(${target} TEST_PREFIX "${name}/" TEST_FILTER "-*Campaign*" DISCOVERY_TIMEOUT 120
