@@ -23,7 +23,7 @@ struct ZoomMiss {
   /// Root mean square of the misses of nine directions of the mount that fill a 640 x 480 picture about the middle:
   /// focal length, boresight and turn together [px].
   double error_px = 0;
-  bool nominal = false;                                      ///< The node looks like a placeholder (vision::isNominal).
+  bool nominal = false;                                      ///< The node looks nominal, not measured (vision::isNominal).
   TrafficLight light = TrafficLight::kGreen;                 ///< Amber beyond 1 % or 3 px of boresight, red beyond 3 % or 10 px.
 };
 
