@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "widgets/loupe.h"
-#include "widgets/overlay_painter.h"
+#include "widgets/overlay_region.h"
 
 namespace longarm::widgets {
 
@@ -108,14 +108,39 @@ void ImageCanvas::refreshShown() {
 }
 
 void ImageCanvas::setOverlay(const vision::Overlay& overlay) {
+  updateChanged(m_overlay, overlay);
   m_overlay = overlay;
-  update();
+  updateLoupe();
 }
 
 void ImageCanvas::setPathOverlay(const vision::Overlay& overlay) {
   if (overlay.shapes.empty() && m_path.shapes.empty()) return;
+  updateChanged(m_path, overlay);
   m_path = overlay;
-  update();
+}
+
+OverlayLook ImageCanvas::overlayLook() const {
+  OverlayLook look;
+  look.max_step_px = undistorted() ? 16 : 0;
+  return look;
+}
+
+// Both as they look in the present view: whatever changes the view repaints everything.
+void ImageCanvas::updateChanged(const vision::Overlay& before, const vision::Overlay& after) {
+  if (!hasPicture()) return;
+  const auto map = [this](const Eigen::Vector2d& raw) { return widgetOfPixel(raw); };
+  update(changedRegion(before, after, m_theme, map, overlayLook(), QFontMetricsF(font()), size()));
+}
+
+// Where the loupe was and where it is now.
+void ImageCanvas::updateLoupe() {
+  if (!m_loupe_painted.isEmpty()) update(m_loupe_painted);
+  if (!loupeVisible()) return;
+  if (const auto middle = widgetOfPixel(loupeCentre())) update(loupeArea(*middle));
+}
+
+QRect ImageCanvas::loupeArea(const QPointF& middle) const {
+  return loupeRect(middle, QSizeF(size())).toAlignedRect().adjusted(-1, -1, 1, 1);
 }
 
 void ImageCanvas::setAge(std::optional<double> age_s) {
@@ -193,12 +218,12 @@ void ImageCanvas::paintEvent(QPaintEvent*) {
     paintEmpty(painter);
     return;
   }
-  OverlayLook look;
-  look.max_step_px = undistorted() ? 16 : 0;
+  const OverlayLook look = overlayLook();
   const auto map = [this](const Eigen::Vector2d& raw) { return widgetOfPixel(raw); };
   paintOverlay(painter, m_path, m_theme, map, look);
   paintOverlay(painter, m_overlay, m_theme, map, look);
   paintAge(painter);
+  m_loupe_painted = {};
   if (loupeVisible()) paintLoupeOver(painter);
   if (hasFocus()) {
     painter.setPen(QPen(m_theme.role(vision::OverlayRole::kSelected).color, 2));
@@ -243,7 +268,9 @@ void ImageCanvas::paintLoupeOver(QPainter& painter) {
   const auto shown = shownOfRaw(content.raw);
   if (!shown) return;
   content.centre = *shown;
-  paintLoupe(painter, loupeRect(m_view.toWidget(*shown), QSizeF(size())), content, m_overlay, m_theme,
+  const QPointF middle = m_view.toWidget(*shown);
+  m_loupe_painted = loupeArea(middle);
+  paintLoupe(painter, loupeRect(middle, QSizeF(size())), content, m_overlay, m_theme,
              [this](const Eigen::Vector2d& raw) { return shownOfRaw(raw); });
 }
 
@@ -277,7 +304,7 @@ void ImageCanvas::mousePressEvent(QMouseEvent* event) {
   if (event->button() == Qt::LeftButton) {
     m_gesture = Gesture::kTool;
     emitPointer(vision::PointerPhase::kPress, m_position);
-    update();
+    updateLoupe();
   } else {
     m_gesture = Gesture::kPan;
     setCursor(Qt::ClosedHandCursor);
@@ -296,10 +323,10 @@ void ImageCanvas::mouseMoveEvent(QMouseEvent* event) {
       m_view.pan(m_position - before);
       viewChanged();
       break;
-    case Gesture::kTool: emitPointer(vision::PointerPhase::kDrag, m_position); update(); break;
+    case Gesture::kTool: emitPointer(vision::PointerPhase::kDrag, m_position); updateLoupe(); break;
     case Gesture::kNone:
       emitPointer(vision::PointerPhase::kHover, m_position);
-      if (m_modifiers.alt) update();
+      updateLoupe();
       break;
   }
 }
@@ -311,7 +338,7 @@ void ImageCanvas::mouseReleaseEvent(QMouseEvent* event) {
     m_gesture = Gesture::kNone;
     emitPointer(vision::PointerPhase::kRelease, m_position);
     m_buttons = event->buttons();
-    update();
+    updateLoupe();
   } else if (m_gesture == Gesture::kPan && event->button() != Qt::LeftButton) {
     m_gesture = Gesture::kNone;
     setCursor(Qt::CrossCursor);
@@ -337,14 +364,14 @@ void ImageCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
 void ImageCanvas::leaveEvent(QEvent* event) {
   QWidget::leaveEvent(event);
   m_inside = false;
-  update();
+  updateLoupe();
   Q_EMIT pointerLeft();
 }
 
 // Pressing or letting go of the key that frees a handle must act at once, not at the next move.
 void ImageCanvas::repeatWithModifiers() {
   if (m_gesture == Gesture::kTool) emitPointer(vision::PointerPhase::kDrag, m_position);
-  update();
+  updateLoupe();
 }
 
 void ImageCanvas::keyPressEvent(QKeyEvent* event) {
@@ -362,10 +389,10 @@ void ImageCanvas::keyPressEvent(QKeyEvent* event) {
   const bool arrow = event->key() >= Qt::Key_Left && event->key() <= Qt::Key_Down;
   if (arrow) {
     m_since_nudge.start();
-    QTimer::singleShot(kNudgeLoupe_ms + 20, this, [this] { update(); });
+    QTimer::singleShot(kNudgeLoupe_ms + 20, this, [this] { updateLoupe(); });
   }
   Q_EMIT sketchKey(*key, modifiersOf(event->modifiers()));
-  update();
+  updateLoupe();
 }
 
 void ImageCanvas::keyReleaseEvent(QKeyEvent* event) {

@@ -15,6 +15,7 @@
 #include "vision/sketch/pointer_event.h"
 #include "widgets/canvas_view.h"
 #include "widgets/lens_map.h"
+#include "widgets/overlay_painter.h"
 #include "widgets/picture_layer.h"
 #include "widgets/theme.h"
 
@@ -104,6 +105,10 @@ class ImageCanvas : public QWidget {
   void paintAge(QPainter& painter);
   void paintEmpty(QPainter& painter);
   void paintLoupeOver(QPainter& painter);
+  OverlayLook overlayLook() const;
+  void updateChanged(const vision::Overlay& before, const vision::Overlay& after);
+  void updateLoupe();
+  QRect loupeArea(const QPointF& middle) const;
 
   vision::PaneSide m_side;
   Theme m_theme = Theme::dark();
@@ -115,6 +120,7 @@ class ImageCanvas : public QWidget {
   CanvasView m_view;
   bool m_fitted = true;                  // follows the widget's size until zoomed or panned
   vision::Overlay m_overlay, m_path;
+  QRect m_loupe_painted;                 // where the loupe stands on screen, empty: nowhere
   std::optional<double> m_age;
   Freshness m_freshness = Freshness::kFresh;
   Gesture m_gesture = Gesture::kNone;

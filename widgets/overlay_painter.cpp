@@ -27,8 +27,9 @@ QPen penOf(const RoleStyle& style, double factor, int points = 0) {
   return pen;
 }
 
-// Runs of points that can be shown; a point that cannot breaks the line.
-QVector<QPolygonF> mapped(const OverlayShape& shape, const PixelToWidget& to_widget, double max_step) {
+}  // namespace
+
+QVector<QPolygonF> mapRuns(const OverlayShape& shape, const PixelToWidget& to_widget, double max_step) {
   QVector<QPolygonF> runs(1);
   const auto add = [&](const Eigen::Vector2d& raw) {
     const auto position = to_widget(raw);
@@ -48,6 +49,8 @@ QVector<QPolygonF> mapped(const OverlayShape& shape, const PixelToWidget& to_wid
   }
   return runs;
 }
+
+namespace {
 
 // Whether both ends lie beyond the same side.
 bool isOutside(const QRectF& bounds, const QPointF& a, const QPointF& b) {
@@ -75,7 +78,7 @@ QVector<QPolygonF> culled(const QVector<QPolygonF>& runs, const QRectF& bounds) 
 
 void paintPolyline(QPainter& painter, const OverlayShape& shape, const RoleStyle& style,
                    const PixelToWidget& to_widget, const OverlayLook& look) {
-  auto runs = mapped(shape, to_widget, look.max_step_px);
+  auto runs = mapRuns(shape, to_widget, look.max_step_px);
   if (!style.dashed) {                         // dashes are counted from the beginning
     const QRectF seen = painter.hasClipping() ? painter.clipBoundingRect() : QRectF(painter.viewport());
     runs = culled(runs, seen.adjusted(-8, -8, 8, 8));
@@ -134,22 +137,29 @@ void paintText(QPainter& painter, const OverlayShape& shape, const RoleStyle& st
   if (shape.points.empty()) return;
   const auto at = to_widget(shape.points.front());
   if (!at) return;
-  const bool tick = shape.role == OverlayRole::kDepthTick;
-  const double lift = tick ? 5 : kHandleRadius + 5;
-  const QString text = QString::fromStdString(shape.text);
   const QFontMetricsF metrics(painter.font());
-  QPointF anchor = *at + QPointF(lift, tick ? lift + metrics.ascent() : -lift);
-  const double reach = painter.viewport().right() - metrics.horizontalAdvance(text) - 3;
-  anchor.setX(std::max(3.0, std::min(anchor.x(), reach)));
-  if (tick) {
-    const QRectF box = metrics.boundingRect(text).translated(anchor).adjusted(-3, 0, 3, 0);
-    if (std::any_of(ticks.begin(), ticks.end(), [&](const QRectF& other) { return other.intersects(box); })) return;
-    ticks.push_back(box);
+  const PlacedText placed = placeText(shape, *at, metrics, painter.viewport().right());
+  if (shape.role == OverlayRole::kDepthTick) {
+    const auto crossed = [&](const QRectF& other) { return other.intersects(placed.box); };
+    if (std::any_of(ticks.begin(), ticks.end(), crossed)) return;
+    ticks.push_back(placed.box);
   }
-  paintHaloText(painter, anchor, text, style.color);
+  paintHaloText(painter, placed.anchor, placed.text, style.color);
 }
 
 }  // namespace
+
+PlacedText placeText(const OverlayShape& shape, const QPointF& at, const QFontMetricsF& metrics, double right) {
+  const bool tick = shape.role == OverlayRole::kDepthTick;
+  const double lift = tick ? 5 : kHandleRadius + 5;
+  PlacedText placed;
+  placed.text = QString::fromStdString(shape.text);
+  placed.anchor = at + QPointF(lift, tick ? lift + metrics.ascent() : -lift);
+  const double reach = right - metrics.horizontalAdvance(placed.text) - 3;
+  placed.anchor.setX(std::max(3.0, std::min(placed.anchor.x(), reach)));
+  placed.box = metrics.boundingRect(placed.text).translated(placed.anchor).adjusted(-3, 0, 3, 0);
+  return placed;
+}
 
 void paintHaloText(QPainter& painter, const QPointF& anchor, const QString& text, const QColor& color) {
   // The same glyphs about the place, out of the font's cache: stroking their outlines takes a hundred times as long.
@@ -162,13 +172,21 @@ void paintHaloText(QPainter& painter, const QPointF& anchor, const QString& text
   painter.drawText(anchor, text);
 }
 
+RoleStyle styleOf(const OverlayShape& shape, const Theme& theme) {
+  RoleStyle style = theme.role(shape.role);
+  const bool plain = shape.role == OverlayRole::kSketch || shape.role == OverlayRole::kSelected ||
+                     shape.role == OverlayRole::kHandle || shape.role == OverlayRole::kLabel;
+  if (plain && shape.colour_rgb >= 0) style.color = QColor(static_cast<QRgb>(shape.colour_rgb));
+  return style;
+}
+
 void paintOverlay(QPainter& painter, const vision::Overlay& overlay, const Theme& theme,
                   const PixelToWidget& to_widget, const OverlayLook& look) {
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
   std::vector<QRectF> ticks;
   for (const auto& shape : overlay.shapes) {
-    const RoleStyle style = theme.role(shape.role);
+    const RoleStyle style = styleOf(shape, theme);
     switch (shape.kind) {
       case OverlayShape::Kind::kPolyline: paintPolyline(painter, shape, style, to_widget, look); break;
       case OverlayShape::Kind::kMarker: paintMarker(painter, shape, style, to_widget, look); break;

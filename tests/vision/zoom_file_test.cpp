@@ -6,6 +6,7 @@
 #include "tests/support/report_zoom_file.h"
 #include "tests/vision/temporary_file.h"
 #include "vision/camera/camera_file.h"
+#include "vision/camera/zoom_camera.h"
 
 namespace longarm::tests {
 namespace {
@@ -34,6 +35,16 @@ TEST(ZoomFile, NodesAreMetExactly) {
   const Pose X_camera_mount = wide.pose->pose.inverse();
   EXPECT_LT((X_camera_mount.translation() - Eigen::Vector3d(-0.004, 0.041, 0.006)).norm(), 1e-12);
   EXPECT_LT((logSO3(X_camera_mount.linear()) - Eigen::Vector3d(0.009, -0.004, 0.034)).norm(), 1e-12);
+}
+
+TEST(ZoomFile, WritesNamesThatAreReadBackWhateverTheyHold) {
+  auto file = vision::parseZoomFile(kReport);
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  file->cameras.front().name = "mast \"2\" <&>\x01 left";
+  const auto again = vision::parseZoomFile(vision::zoomFileText(*file));
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(again->cameras.front().name, "mast \"2\" <&>  left");
+  EXPECT_EQ(again->cameras.front().nodes.size(), file->cameras.front().nodes.size());
 }
 
 TEST(ZoomFile, FocalLengthGrowsMonotonely) {

@@ -107,7 +107,7 @@ TEST(ImageCanvas, SaysRawPixelsAt25And100And400Percent) {
   for (const double scale : {0.25, 1.0, 4.0}) {
     Pane pane(grey(640, 480));
     pane.setScale(scale);
-    for (const Eigen::Vector2d pixel : {Eigen::Vector2d(319.5, 239.5), Eigen::Vector2d(300.1, 250.7)}) {
+    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(319.5, 239.5), Eigen::Vector2d(300.1, 250.7)}) {
       const QPointF at = *pane.canvas.widgetOfPixel(pixel);
       pane.events.clear();
       pane.mouse(QEvent::MouseMove, at, Qt::NoButton, Qt::NoButton);
@@ -239,7 +239,7 @@ TEST(ImageCanvas, SaysTheSameRawPixelWhetherStraightenedOrNot) {
   pane.canvas.setCamera(barrel(640, 480));
   pane.canvas.setUndistorted(true);
   ASSERT_TRUE(pane.canvas.undistorted());
-  for (const Eigen::Vector2d raw : {Eigen::Vector2d(40, 30), Eigen::Vector2d(600, 400), Eigen::Vector2d(319.5, 239.5)}) {
+  for (const Eigen::Vector2d& raw : {Eigen::Vector2d(40, 30), Eigen::Vector2d(600, 400), Eigen::Vector2d(319.5, 239.5)}) {
     const auto at = pane.canvas.widgetOfPixel(raw);
     ASSERT_TRUE(at);
     pane.events.clear();

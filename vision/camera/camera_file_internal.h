@@ -20,6 +20,9 @@ bool isZoomXml(std::string_view text);
 /// The camera of a zoom file at one setting.
 Result<CameraFile> cameraFromZoomXml(std::string_view text, double zoom);
 
+/// Text as content of an XML element; control bytes, which XML cannot hold, become blanks.
+std::string escapedXml(const std::string& text);
+
 std::string rosYaml(const nlohmann::json& camera);
 std::string openCvYaml(const nlohmann::json& camera);
 std::string openCvXml(const nlohmann::json& camera);

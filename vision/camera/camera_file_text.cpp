@@ -53,7 +53,13 @@ std::string yamlLines(const json& camera, bool opencv) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
+std::string element(const std::string& name, const std::string& content, const std::string& attribute = {}) {
+  return "<" + name + attribute + ">" + content + "</" + name + ">\n";
+}
+
+}  // namespace
+
+std::string escapedXml(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
@@ -66,12 +72,6 @@ std::string escaped(const std::string& text) {
   }
   return out;
 }
-
-std::string element(const std::string& name, const std::string& content, const std::string& attribute = {}) {
-  return "<" + name + attribute + ">" + content + "</" + name + ">\n";
-}
-
-}  // namespace
 
 std::string rosYaml(const json& camera) {
   std::string out = yamlLines(camera, false);
@@ -96,11 +96,11 @@ std::string openCvXml(const json& camera) {
                          element("dt", "d") + element("data", numbers(value["data"], " ")),
                      " type_id=\"opencv-matrix\"");
     } else if (value.is_object()) {
-      out += element(key, "\n" + element("parent", "\"" + escaped(value["parent"]) + "\"") +
+      out += element(key, "\n" + element("parent", "\"" + escapedXml(value["parent"]) + "\"") +
                               element("xyz", numbers(value["xyz"], " ")) +
                               element("quaternion_xyzw", numbers(value["quaternion_xyzw"], " ")));
     } else {
-      out += element(key, value.is_string() ? "\"" + escaped(value) + "\"" : number(value));
+      out += element(key, value.is_string() ? "\"" + escapedXml(value) + "\"" : number(value));
     }
   }
   return out + "</opencv_storage>\n";

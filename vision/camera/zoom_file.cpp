@@ -100,19 +100,6 @@ Result<ZoomCamera> readCamera(const pugi::xml_node& element, std::vector<std::st
   return camera;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 template <std::size_t N>
 std::string braced(const std::array<double, N>& numbers) {
   std::string out;
@@ -159,9 +146,9 @@ Result<ZoomFile> readZoomFile(const std::string& path) {
 
 std::string zoomFileText(const ZoomFile& file) {
   std::string out = "<?xml version=\"1.0\"?>\n<SR_world>\n";
-  for (const auto& [name, text] : file.headers) out += "<" + name + "> " + escaped(text) + " </" + name + ">\n";
+  for (const auto& [name, text] : file.headers) out += "<" + name + "> " + internal::escapedXml(text) + " </" + name + ">\n";
   for (const auto& camera : file.cameras) {
-    out += "<SR_cam> " + escaped(camera.name) + "\n";
+    out += "<SR_cam> " + internal::escapedXml(camera.name) + "\n";
     for (const auto& node : camera.nodes) {
       out += "<SR_zoom> " + formatNumber(node.zoom) + "\n<SR_cam_int> " + braced(node.interior) + " </SR_cam_int>\n<SR_cam_ext> " +
              braced(node.exterior) + " </SR_cam_ext>\n</SR_zoom>\n";
