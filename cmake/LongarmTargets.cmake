@@ -31,7 +31,7 @@ endfunction()
 # longarm_test(vision SOURCES a_test.cpp .. LINK longarm::vision [LABEL unit|gui|gl] [QT] [PCH header ..])
 # One executable; unit and gui tests are registered case by case, gl tests as one run under Xvfb.
 # Campaigns are cases whose suite name ends in "Campaign": they are left out of the
-# default run and are started by the executable with --gtest_filter='*Campaign*'.  SERIAL: real time, runs alone.
+# default run and are started by the executable with --gtest_filter='*Campaign*'.  SERIAL: real time, label realtime, runs alone.
 function(longarm_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "QT;SERIAL" "LABEL;TIMEOUT" "SOURCES;LINK;PCH")
   if(NOT arg_LABEL)
@@ -68,15 +68,17 @@ function(longarm_test name)
       ENVIRONMENT "QT_QPA_PLATFORM=xcb;LIBGL_ALWAYS_SOFTWARE=1")
   else()
     set(environment "")
+    set(labels ${arg_LABEL})
     if(arg_SERIAL)
       list(APPEND environment RUN_SERIAL TRUE)
+      set(labels realtime)
     endif()
     if(arg_LABEL STREQUAL "gui")
       list(APPEND environment ENVIRONMENT QT_QPA_PLATFORM=offscreen)
     endif()
     include(GoogleTest)
     gtest_discover_tests(${target} TEST_PREFIX "${name}/" TEST_FILTER "-*Campaign*" DISCOVERY_TIMEOUT 120
-      DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ${environment})
+      DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${labels} TIMEOUT ${arg_TIMEOUT} ${environment})
   endif()
   set_property(GLOBAL APPEND PROPERTY LONGARM_TEST_EXECUTABLES ${target})
 endfunction()

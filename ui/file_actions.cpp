@@ -1,9 +1,13 @@
 #include "ui/file_actions.h"
 
+#include <limits>
+#include <utility>
+
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
 
+#include "session/commands/sketch_commands.h"
 #include "session/document/document_file.h"
 
 namespace longarm::ui {
@@ -31,8 +35,9 @@ FileActions::FileActions(Workbench& bench, Actions& actions, QSettings& settings
   };
   connect(actions.at(ActionId::kSaveSketchAs), &QAction::triggered, this, save_as);
   connect(actions.at(ActionId::kSaveSketch), &QAction::triggered, this, [this, save_as] {
-    if (m_folder.isEmpty()) save_as();
-    else saveSketch(m_folder);
+    // Where the opening of that sketch was undone, something else is on the table: it needs a folder of its own.
+    if (isOfFolder()) saveSketch(m_folder);
+    else save_as();
   });
   fillRecent();
 }
@@ -77,9 +82,13 @@ void FileActions::openSketch(const QString& folder) {
       this, [path = folder.toStdString()] { return session::loadSketch(path); },
       [this, &bench, folder](Result<session::DocumentState> state) {
         if (!state) return bench.say(QString::fromStdString(state.error().message));
-        bench.document().reset(std::move(*state));
-        bench.history().clear();
+        const bool lost_nothing = bench.history().isClean();
+        bench.history().push(session::openState(bench.document(), std::move(*state), QFileInfo(folder).fileName().toStdString()));
+        bench.history().markClean();
+        m_from = bench.history().position();
+        m_to = std::numeric_limits<std::size_t>::max();
         setFolder(folder);
+        if (!lost_nothing) bench.say(tr("Opened %1. What you had was not saved: Undo brings it back").arg(folder));
         remember(QStringLiteral("sketch"), {QFileInfo(folder).absoluteFilePath()});
       });
 }
@@ -97,10 +106,16 @@ void FileActions::saveSketch(const QString& folder) {
       [this, &bench, folder, position](Result<int> saved) {
         if (!saved) return bench.say(QString::fromStdString(saved.error().message));
         if (bench.history().position() == position) bench.history().markClean();
+        if (position < m_from) m_to = std::exchange(m_from, 0);
         setFolder(folder);
         remember(QStringLiteral("sketch"), {QFileInfo(folder).absoluteFilePath()});
         bench.say(tr("Saved to %1").arg(folder));
       });
+}
+
+bool FileActions::isOfFolder() const {
+  const std::size_t position = m_bench.history().position();
+  return !m_folder.isEmpty() && position >= m_from && position < m_to;
 }
 
 void FileActions::setFolder(const QString& folder) {

@@ -3,7 +3,9 @@
 /// @file
 /// FileActions: opening pictures and sketches, saving, what was open lately.
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 
 #include <QObject>
 #include <QPointer>
@@ -30,10 +32,11 @@ class FileActions final : public QObject {
   QMenu* recentMenu() const { return m_recent; }
   void openPictures(const session::PictureFiles& left, const session::PictureFiles& right);
   void openViews(const QString& path);
-  /// Replaces document and history; the sketch before is in neither.
+  /// One step of undo: the sketch before comes back with Undo.
   void openSketch(const QString& folder);
   void saveSketch(const QString& folder);
-  QString sketchFolder() const { return m_folder; }
+  /// Where the sketch on the table was read from or written to; empty when it has no folder.
+  QString sketchFolder() const { return isOfFolder() ? m_folder : QString(); }
 
  Q_SIGNALS:
   void sketchFolderChanged();
@@ -45,6 +48,7 @@ class FileActions final : public QObject {
   void fillRecent();
   void openRecent(const QString& entry);
   void setFolder(const QString& folder);
+  bool isOfFolder() const;
 
   Workbench& m_bench;
   QSettings& m_settings;
@@ -52,6 +56,8 @@ class FileActions final : public QObject {
   QMenu* m_recent;
   QPointer<PictureFilesDialog> m_pictures;
   QString m_folder;
+  // Positions of the history at which the sketch is that of the folder: undoing or redoing an "Open" leaves them.
+  std::size_t m_from = 0, m_to = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace longarm::ui

@@ -186,6 +186,26 @@ class ShowSnapshot final : public EditCommand {
   std::string m_name;
 };
 
+class OpenState final : public EditCommand {
+ public:
+  OpenState(const Document& document, DocumentState after, std::string label)
+      : m_before(document.state()), m_after(std::move(after)), m_label(std::move(label)) {}
+  void apply(Document& document) override {
+    m_selection_before = document.selection();
+    document.reset(m_after);
+  }
+  void revert(Document& document) override {
+    document.reset(m_before);
+    document.select(m_selection_before);
+  }
+  std::string label() const override { return m_label; }
+
+ private:
+  DocumentState m_before, m_after;
+  std::string m_label;
+  Selection m_selection_before;
+};
+
 class Composite final : public EditCommand {
  public:
   Composite(std::string label, std::vector<CommandPtr> commands)
@@ -289,6 +309,10 @@ CommandPtr showSnapshot(const Document& document, PaneSide side, SnapshotId id) 
   if (after[1 - here] == id) std::swap(after[0], after[1]);
   after[here] = id;
   return std::make_unique<ShowSnapshot>(before, after, snapshot->view.name);
+}
+
+CommandPtr openState(const Document& document, DocumentState state, const std::string& name) {
+  return std::make_unique<OpenState>(document, std::move(state), "Open " + name);
 }
 
 CommandPtr composite(std::string label, std::vector<CommandPtr> commands) {

@@ -37,6 +37,9 @@ CommandPtr removeSnapshot(const Document& document, SnapshotId id);
 /// Shows a picture of the library; when the other pane has it the two change places.
 CommandPtr showSnapshot(const Document& document, PaneSide side, SnapshotId id);
 
+/// Everything gives way to a sketch that was read; undone, everything is back.  @param name for "Undo Open ..."
+CommandPtr openState(const Document& document, DocumentState state, const std::string& name);
+
 /// Several steps as one.
 CommandPtr composite(std::string label, std::vector<CommandPtr> commands);
 

@@ -1,4 +1,5 @@
 // Undo and redo: labels, limits, the clean mark, and the state restored bit for bit.
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -166,6 +167,18 @@ TEST(SketchCommands, DuplicateWithAnIdAndNameOfItsOwn) {
   EXPECT_EQ(bench.document.items()[1].picks, bench.document.items()[0].picks);
 }
 
+TEST(SketchCommands, OpenASketchAndBringBackWhatWasThere) {
+  Bench bench;
+  const DocumentState before = bench.document.state();
+  DocumentState other;
+  other.snapshots = before.snapshots;
+  bench.history.push(openState(bench.document, other, "cellar"));
+  EXPECT_EQ(bench.document.state(), other);
+  EXPECT_EQ(bench.history.undoLabel(), "Open cellar");
+  bench.history.undo();
+  EXPECT_EQ(bench.document.state(), before);
+}
+
 /// One random edit of any kind; null when the dice ask for something that is not there.
 class RandomEditor {
  public:
@@ -173,7 +186,7 @@ class RandomEditor {
   CommandPtr next() {
     const Document& document = m_bench.document;
     if (document.items().size() > 12) return removeItems(document, {anyItem(), anyItem(), anyItem()});
-    switch (below(13)) {
+    switch (below(14)) {
       case 0:
       case 1: return addItem(randomItem());
       case 2: return removeItems(document, {anyItem(), anyItem()});
@@ -186,6 +199,7 @@ class RandomEditor {
       case 9: return colourItem(document, anyItem(), static_cast<std::uint32_t>(below(1 << 24)));
       case 10: return below(2) == 0 ? duplicateItem(document, anyItem()) : moveItem(document, anyItem(), below(8));
       case 11: return snapshotEdit();
+      case 12: return below(20) == 0 ? openState(document, otherSketch(), "other") : nullptr;
       default: return both();
     }
   }
@@ -208,6 +222,13 @@ class RandomEditor {
       }
     }
     return item;
+  }
+  // What a file would bring: one item of ours less, in another order.
+  DocumentState otherSketch() {
+    DocumentState state = m_bench.document.state();
+    if (!state.items.empty()) state.items.pop_back();
+    std::reverse(state.items.begin(), state.items.end());
+    return state;
   }
   CommandPtr both() {
     std::vector<CommandPtr> commands;

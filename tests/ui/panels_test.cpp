@@ -13,6 +13,7 @@
 #include "session/commands/sketch_commands.h"
 #include "tests/session/synthetic_views.h"
 #include "ui/feature_panel.h"
+#include "ui/file_actions.h"
 #include "ui/head_panel.h"
 #include "ui/macro_panel.h"
 #include "ui/motion_panel.h"
@@ -240,6 +241,31 @@ TEST(PictureFilesDialog, OpensOnlyWhatExistsAndNamesWhatIsMissing) {
   dialog.setFiles(left, right);
   EXPECT_FALSE(open->isEnabled());
   EXPECT_TRUE(open->toolTip().contains(QStringLiteral("/nowhere/camera.yaml")));
+}
+
+TEST(FileActions, AnOpenedSketchTakesThePlaceOfAnotherWhichUndoBringsBack) {
+  Rig rig;
+  QSettings settings(rig.folder.filePath(QStringLiteral("settings.ini")), QSettings::IniFormat);
+  FileActions files(rig.bench, rig.actions, settings, nullptr);
+  QSignalSpy folder_changed(&files, &FileActions::sketchFolderChanged);
+  const QString cellar = rig.folder.filePath(QStringLiteral("cellar")), attic = rig.folder.filePath(QStringLiteral("attic"));
+  rig.addLine("Line 1");
+  files.saveSketch(cellar);
+  ASSERT_TRUE(folder_changed.wait(10000));
+  rig.addLine("Line 2");
+  files.openSketch(cellar);
+  ASSERT_TRUE(folder_changed.wait(10000));
+  EXPECT_EQ(rig.bench.document().items().size(), 1u);
+  EXPECT_EQ(files.sketchFolder(), cellar);
+  EXPECT_TRUE(rig.bench.history().isClean());
+  rig.bench.history().undo();
+  EXPECT_EQ(rig.bench.document().items().size(), 2u) << "what was not saved must come back";
+  EXPECT_TRUE(files.sketchFolder().isEmpty()) << "saving now would write over the opened sketch";
+  files.saveSketch(attic);
+  ASSERT_TRUE(folder_changed.wait(10000));
+  EXPECT_EQ(files.sketchFolder(), attic);
+  rig.bench.history().redo();
+  EXPECT_TRUE(files.sketchFolder().isEmpty());
 }
 
 }  // namespace
