@@ -1,5 +1,6 @@
 #include "ui/demonstration.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <QDir>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kTruth_s = 3, kAim_s = 20, kPair_s = 15, kPlan_s = 30, kPlay_s = 180, kGrip_s = 15;
 constexpr double kMargin_px = 40;          // So far inside both pictures the pipe's ends must lie.
+constexpr int kTurns = 12;
 constexpr const char* kPipe = "pipe";
 
 Status failed(const QString& sentence) { return {ErrorCode::kNoSolution, sentence.toStdString()}; }
@@ -120,43 +122,51 @@ Status Demonstration::waitForLink() {
   return shoot("live");
 }
 
+bool Demonstration::inPicture(PaneSide side, const Truth& now) const {
+  const auto view = m_bench.live().view(m_bench.paneCamera(side));
+  return view && std::all_of(now.ends.begin(), now.ends.end(), [&](const Eigen::Vector3d& end) {
+    const auto pixel = see(side, now, end);
+    return pixel && view->camera.containsPixel(*pixel, -kMargin_px);
+  });
+}
+
+QString Demonstration::panTiltOf(PaneSide side) const {
+  const auto* camera = m_bench.robot().runtime()->workcell().camera(m_bench.paneCamera(side).toStdString());
+  return camera != nullptr ? QString::fromStdString(camera->pan_tilt) : QString();
+}
+
+// One turn of the head that carries this pane's camera: a double click on the pipe, or the keys where it is out of the picture.
+void Demonstration::turnTowardsPipe(PaneSide side, const Truth& now) {
+  auto* canvas = m_window.pictures()->pane(side)->canvas();
+  const Eigen::Vector3d pipe_W = (now.ends[0] + now.ends[1]) / 2;
+  const auto middle = see(side, now, pipe_W);
+  const auto at = middle && canvas->pictureSize().width() > 0 ? canvas->widgetOfPixel(*middle) : std::nullopt;
+  if (at && canvas->rect().contains(at->toPoint())) {
+    m_hand.doubleClick(canvas, *at);
+  } else {
+    const Eigen::Vector3d p_C = now.X_WC[static_cast<std::size_t>(side)].inverse() * pipe_W;
+    for (int i = 0; i < 3; ++i) m_hand.key(canvas, p_C.x() > 0 ? Qt::Key_Right : Qt::Key_Left, Qt::ShiftModifier);
+    for (int i = 0; i < 2; ++i) m_hand.key(canvas, p_C.y() > 0 ? Qt::Key_Down : Qt::Key_Up, Qt::ShiftModifier);
+  }
+  const auto still = [this, head = panTiltOf(side).toStdString()] {
+    const auto angles = m_bench.robot().runtime()->panTilt(head);
+    return !angles || !angles->moving;
+  };
+  SimulatedHand::pump(300);
+  SimulatedHand::waitFor(still, kAim_s);
+}
+
 Status Demonstration::aim() {
-  const auto inside = [this](const Eigen::Vector2d& pixel, const vision::CameraModel& camera) {
-    return camera.containsPixel(pixel, -kMargin_px);
-  };
-  const auto aimed = [&](const Truth& now) {
-    for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
-      const auto view = m_bench.live().view(m_bench.paneCamera(side));
-      for (const auto& end : now.ends) {
-        const auto pixel = see(side, now, end);
-        if (!view || !pixel || !inside(*pixel, view->camera)) return false;
-      }
-    }
-    return true;
-  };
   auto now = truth();
   if (!now) return now.error();
-  auto* canvas = m_window.pictures()->pane(PaneSide::kLeft)->canvas();
-  for (int tries = 0; tries < 8 && !aimed(*now); ++tries) {
-    const auto middle = see(PaneSide::kLeft, *now, (now->ends[0] + now->ends[1]) / 2);
-    if (middle && canvas->pictureSize().width() > 0 && canvas->widgetOfPixel(*middle) &&
-        canvas->rect().contains(canvas->widgetOfPixel(*middle)->toPoint())) {
-      m_hand.doubleClick(canvas, *canvas->widgetOfPixel(*middle));
-    } else {
-      const Eigen::Vector3d p_C = now->X_WC[0].inverse() * Eigen::Vector3d((now->ends[0] + now->ends[1]) / 2);
-      for (int i = 0; i < 3; ++i) m_hand.key(canvas, p_C.x() > 0 ? Qt::Key_Right : Qt::Key_Left, Qt::ShiftModifier);
-      for (int i = 0; i < 2; ++i) m_hand.key(canvas, p_C.y() > 0 ? Qt::Key_Down : Qt::Key_Up, Qt::ShiftModifier);
-    }
-    const auto still = [this] {
-      const auto head = m_bench.robot().runtime()->panTilt(m_bench.aim().panTilt().toStdString());
-      return !head || !head->moving;
-    };
-    SimulatedHand::pump(300);
-    SimulatedHand::waitFor(still, kAim_s);
+  const auto aimed = [&] { return inPicture(PaneSide::kLeft, *now) && inPicture(PaneSide::kRight, *now); };
+  const bool two_heads = panTiltOf(PaneSide::kLeft) != panTiltOf(PaneSide::kRight);
+  for (int tries = 0; tries < kTurns && !aimed(); ++tries) {
+    turnTowardsPipe(two_heads && inPicture(PaneSide::kLeft, *now) ? PaneSide::kRight : PaneSide::kLeft, *now);
     now = truth();
     if (!now) return now.error();
   }
-  return aimed(*now) ? Status() : failed(QStringLiteral("The pipe could not be brought into both pictures."));
+  return aimed() ? Status() : failed(QStringLiteral("The pipe could not be brought into both pictures."));
 }
 
 Status Demonstration::takePair() {

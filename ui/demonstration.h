@@ -58,6 +58,9 @@ class Demonstration final {
   Result<Truth> truth() const;
   /// Raw pixel of a point in the picture of this pane's camera.
   Result<Eigen::Vector2d> see(vision::PaneSide side, const Truth& truth, const Eigen::Vector3d& p_W) const;
+  bool inPicture(vision::PaneSide side, const Truth& now) const;
+  QString panTiltOf(vision::PaneSide side) const;
+  void turnTowardsPipe(vision::PaneSide side, const Truth& now);
   Status shoot(const char* name);
   Status shootAt(const QSize& size, const char* name);
 

@@ -44,6 +44,10 @@ HeadPanel::HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance,
   angles->addWidget(new QLabel(tr("tilt"), this));
   angles->addWidget(m_tilt);
   left->addLayout(angles);
+  m_head = new QLabel(this);
+  m_head->setAlignment(Qt::AlignCenter);
+  m_head->setToolTip(tr("The head that the stick turns: that of the pane clicked last."));
+  left->addWidget(m_head);
   row->addLayout(left);
   auto* right = new QVBoxLayout;
   right->setSpacing(5);
@@ -96,6 +100,8 @@ void HeadPanel::refresh() {
   m_actions.setWhyNot(ActionId::kTakePair, m_bench.whyNotTakePair());
 
   const auto& workcell = m_bench.document().workcell();
+  m_head->setVisible(workcell && workcell->pan_tilts.size() > 1);
+  m_head->setText(m_bench.aim().panTilt());
   QString why = m_bench.robot().whyNotReady();
   if (why.isEmpty() && (!workcell || !workcell->gripper)) why = tr("The workcell has no gripper.");
   m_actions.setWhyNot(ActionId::kGripperOpen, why);

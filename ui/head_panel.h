@@ -30,7 +30,7 @@ class HeadPanel final : public QWidget {
   Actions& m_actions;
   widgets::AimStick* m_stick;
   widgets::ValueLabel *m_pan, *m_tilt;
-  QLabel* m_gripper;
+  QLabel *m_head, *m_gripper;
 };
 
 }  // namespace longarm::ui

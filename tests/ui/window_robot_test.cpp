@@ -21,23 +21,29 @@ class WindowWithRobot : public tests::WindowFixture {
     bench->openRobot({});
     ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().linkUp(); }, 30)) << bench->robot().status().link_text;
   }
+  // The whole task as an operator does it.
+  void grabsThePipe(const QString& variant) {
+    openWindow(QStringLiteral("dark"), {1920, 1080});
+    ui::RobotChoice choice;
+    choice.variant = variant;
+    bench->openRobot(choice);
+    ui::DemonstrationOptions options;
+    const QString pictures = qEnvironmentVariable("LONGARM_UI_PICTURES");
+    options.folder = pictures.isEmpty() ? folder.filePath(QStringLiteral("pictures")) : pictures + QStringLiteral("/demo") + variant;
+    ui::Demonstration demonstration(*window, options);
+    const Status done = demonstration.run();
+    EXPECT_TRUE(done.ok()) << done.error().message;
+    EXPECT_GE(demonstration.picturesTaken(), 3);
+    EXPECT_TRUE(bench->robot().runtime() != nullptr && bench->robot().runtime()->holding());
+  }
   bool pairTaken() const {
     return bench->document().paneSnapshot(PaneSide::kLeft) && bench->document().paneSnapshot(PaneSide::kRight);
   }
 };
 
-TEST_F(WindowWithRobot, GrabsThePipeByMouseAlone) {
-  openWindow(QStringLiteral("dark"), {1920, 1080});
-  bench->openRobot({});
-  ui::DemonstrationOptions options;
-  const QString pictures = qEnvironmentVariable("LONGARM_UI_PICTURES");
-  options.folder = pictures.isEmpty() ? folder.filePath(QStringLiteral("pictures")) : pictures + QStringLiteral("/demo");
-  ui::Demonstration demonstration(*window, options);
-  const Status done = demonstration.run();
-  EXPECT_TRUE(done.ok()) << done.error().message;
-  EXPECT_GE(demonstration.picturesTaken(), 3);
-  EXPECT_TRUE(bench->robot().runtime() != nullptr && bench->robot().runtime()->holding());
-}
+TEST_F(WindowWithRobot, GrabsThePipeByMouseAlone) { grabsThePipe(QString()); }
+
+TEST_F(WindowWithRobot, GrabsThePipeWithTwoHeadsThatAreAimedOneByOne) { grabsThePipe(QStringLiteral("ptz")); }
 
 TEST_F(WindowWithRobot, OutlivesItsRobotAndTakesItBack) {
   openWithRobot();
