@@ -88,7 +88,7 @@ void HeadPanel::refresh() {
   m_stick->setToolTip(aim.isEmpty() ? tr("Turns the cameras while it is held. Arrow keys in a live pane do the same.") : aim);
   auto* runtime = m_bench.robot().runtime();
   std::optional<double> pan, tilt;
-  if (runtime != nullptr) {
+  if (runtime != nullptr && m_bench.robot().linkUp()) {
     const auto angles = runtime->panTilt(m_bench.aim().panTilt().toStdString());
     if (angles) {
       pan = angles->pan * kDegPerRad;

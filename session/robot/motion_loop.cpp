@@ -11,6 +11,7 @@ namespace {
 using planning::PlayerState;
 
 constexpr const char* kOwner = "player";
+constexpr const char* kJogOwner = "jog";
 
 bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || state == PlayerState::kPausing; }
 
@@ -19,16 +20,18 @@ bool isLinkTrouble(ErrorCode code) { return code == ErrorCode::kStale || code ==
 }  // namespace
 
 MotionLoop::MotionLoop(std::shared_ptr<hardware::RobotArm> arm, hardware::MotionGate& gate,
-                       std::vector<std::string> joints, const MotionLimits& limits, const Clock& clock,
+                       std::shared_ptr<const planning::Workcell> workcell, const Clock& clock,
                        MotionLoopOptions options, Report report)
-    : m_arm(std::move(arm)),
+    : m_workcell(std::move(workcell)),
+      m_arm(std::move(arm)),
       m_gate(gate),
-      m_joints(std::move(joints)),
+      m_joints(m_workcell->armJointNames()),
       m_clock(clock),
       m_options(options),
       m_report(std::move(report)),
       m_gui_s(clock.now_s()),
-      m_player(limits, options.player) {}
+      m_player(m_workcell->arm_limits, options.player),
+      m_jogger(m_workcell, options.jog) {}
 
 double MotionLoop::guiAge() const { return m_options.gui_watchdog ? m_clock.now_s() - m_gui_s.load() : 0; }
 
@@ -131,8 +134,45 @@ Trajectory MotionLoop::trajectory() const {
 
 MotionState MotionLoop::state() const {
   std::lock_guard<std::mutex> lock(m_mutex);
-  return {m_player.state(), m_player.cursor(), m_player.duration(),
-          m_player.rate(),  m_player.speed(),  m_notice};
+  return {m_player.state(), m_player.cursor(),   m_player.duration(), m_player.rate(),
+          m_player.speed(), m_notice, m_jogger.active(m_clock.now_s()), m_jogger.report()};
+}
+
+Status MotionLoop::jog(const planning::JogCommand& command) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  if (m_gate.stopped()) return {ErrorCode::kRefused, "jog: STOP is latched; reset it first"};
+  if (m_stop_seen.load()) return {ErrorCode::kRefused, "jog: the stop is still being carried out"};
+  if (isMoving(m_player.state())) return {ErrorCode::kRefused, "jog: a motion is being played; pause it first"};
+  if (const auto here = measured(); !here) return here.error();
+  if (auto status = m_gate.acquire(kJogOwner); !status) return status;
+  auto status = m_jogger.command(command, m_clock.now_s());
+  if (status) m_notice.clear();
+  return status;
+}
+
+void MotionLoop::releaseJog() {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  m_jogger.release();
+}
+
+void MotionLoop::setObstacles(const std::vector<planning::WorldObject>& objects) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  m_jogger.setObjects(objects);
+}
+
+// `m_mutex` is held.
+Horizon MotionLoop::jogHorizon() {
+  const double now_s = m_clock.now_s();
+  if (guiAge() >= m_options.gui_stop_jog_s) m_jogger.release();
+  if (!m_jogger.active(now_s)) {
+    m_gate.release(kJogOwner);
+    return {};
+  }
+  const auto state = m_arm->jointState();
+  if (!state || now_s - state->stamp_s > m_options.max_state_age_s) return {};   // what is in force ends at rest
+  Eigen::VectorXd q = m_workcell->model->neutral();
+  m_workcell->model->assign(*state, q);
+  return m_jogger.tick(now_s, q);
 }
 
 void MotionLoop::tick() {
@@ -141,10 +181,16 @@ void MotionLoop::tick() {
   Horizon horizon;
   {
     std::lock_guard<std::mutex> lock(m_mutex);
-    if (m_stop_seen.exchange(false)) m_player.halt();
+    if (m_stop_seen.exchange(false)) {
+      m_player.halt();
+      m_jogger.halt();
+    }
     horizon = m_player.tick(m_clock.now_s());
     now = m_player.state();
-    if (!isMoving(now)) m_gate.release(kOwner);
+    if (!isMoving(now)) {
+      m_gate.release(kOwner);
+      horizon = jogHorizon();
+    }
   }
   if (!horizon.points.empty()) submit(horizon);
   m_gate.watch();
@@ -169,16 +215,18 @@ void MotionLoop::submit(const Horizon& horizon) {
   if (status || m_gate.stopped()) return;
   if (isLinkTrouble(status.error().code)) {
     m_gate.stop("link", status.error().message);
-    haltWith("fault", "link", status.error().message);
+    haltWith("fault", "link", horizon.owner, status.error().message);
   } else {
-    haltWith("refused", "gate", status.error().message);
+    haltWith("refused", "gate", horizon.owner, status.error().message);
   }
 }
 
-void MotionLoop::haltWith(const std::string& kind, const std::string& source, const std::string& text) {
+void MotionLoop::haltWith(const std::string& kind, const std::string& source, const std::string& owner,
+                          const std::string& text) {
   {
     std::lock_guard<std::mutex> lock(m_mutex);
-    m_player.halt();
+    if (owner == kOwner) m_player.halt();
+    m_jogger.halt();
     m_notice = text;
   }
   m_report(kind, source, text);

@@ -15,6 +15,7 @@
 #include "core/result.h"
 #include "hardware/device.h"
 #include "hardware/motion_gate.h"
+#include "planning/jog/jogger.h"
 #include "planning/player/player.h"
 
 namespace longarm::session {
@@ -25,12 +26,15 @@ struct MotionLoopOptions {
   bool gui_watchdog = true;
   double gui_stop_jog_s = 0.25, gui_stop_motion_s = 0.5, gui_silent_s = 1.2;
   planning::PlayerOptions player;
+  planning::JogOptions jog;
 };
 
 struct MotionState {
   planning::PlayerState player = planning::PlayerState::kEmpty;
   double cursor = 0, duration = 0, rate = 0, speed = 1;
   std::string notice;
+  bool jogging = false;
+  planning::JogReport jog;
 };
 
 /// Time comes from the clock that is given, so that a thread or a lockstep simulation drives it alike.
@@ -41,10 +45,10 @@ class MotionLoop {
   using Report =
       std::function<void(const std::string& kind, const std::string& source, const std::string& text)>;
 
-  /// Borrows gate and clock, which must outlive it.
+  /// Borrows gate and clock, which must outlive it.  @param workcell With a model and the arm's limits.
   MotionLoop(std::shared_ptr<hardware::RobotArm> arm, hardware::MotionGate& gate,
-             std::vector<std::string> joints, const MotionLimits& limits, const Clock& clock,
-             MotionLoopOptions options, Report report);
+             std::shared_ptr<const planning::Workcell> workcell, const Clock& clock, MotionLoopOptions options,
+             Report report);
 
   /// As RobotRuntime's functions of the same names.
   Status load(const Trajectory& trajectory);
@@ -55,6 +59,9 @@ class MotionLoop {
   Status scrub(double cursor_s);
   Trajectory trajectory() const;
   MotionState state() const;
+  Status jog(const planning::JogCommand& command);
+  void releaseJog();
+  void setObstacles(const std::vector<planning::WorldObject>& objects);
 
   void touchGui() { m_gui_s.store(m_clock.now_s()); }
   /// Whether the window has been alive lately enough to tell the robot so: long enough for the pause that comes
@@ -72,10 +79,12 @@ class MotionLoop {
   Status takePlaceOnPath();
   Result<Eigen::VectorXd> measured() const;
   void watchGui();
+  Horizon jogHorizon();
   void submit(const Horizon& horizon);
-  void haltWith(const std::string& kind, const std::string& source, const std::string& text);
+  void haltWith(const std::string& kind, const std::string& source, const std::string& owner, const std::string& text);
   void reportChange(planning::PlayerState before, planning::PlayerState after) const;
 
+  const std::shared_ptr<const planning::Workcell> m_workcell;
   const std::shared_ptr<hardware::RobotArm> m_arm;
   hardware::MotionGate& m_gate;
   const std::vector<std::string> m_joints;
@@ -87,6 +96,7 @@ class MotionLoop {
   planning::PlayerState m_last = planning::PlayerState::kEmpty;  // After the last tick; tick()'s thread only.
   mutable std::mutex m_mutex;  // Guards what follows; never held while something is sent.
   planning::Player m_player;
+  planning::Jogger m_jogger;
   std::string m_notice;
 };
 

@@ -31,7 +31,7 @@ std::vector<std::string> robotArguments(const RuntimeOptions& options) {
 MotionLoopOptions loopOptions(const RuntimeOptions& options) {
   return {options.start_tolerance, options.gate.max_state_age_s, options.gui_watchdog,
           options.gui_stop_jog_s,  options.gui_stop_motion_s,    options.gui_silent_s,
-          options.player};
+          options.player,          options.jog};
 }
 
 bool onThisMachine(const std::string& url) { return url.rfind("ws://127.0.0.1:", 0) == 0; }
@@ -54,17 +54,17 @@ hardware::GateChecks gateChecks(const planning::Workcell& workcell) {
 
 }  // namespace
 
-RobotCore::RobotCore(const planning::Workcell& workcell, const RuntimeOptions& options, const Clock& clock,
-                     MotionLoop::Report report)
-    : m_workcell(workcell), m_options(options), m_clock(clock), m_report(std::move(report)) {
+RobotCore::RobotCore(std::shared_ptr<const planning::Workcell> workcell, const RuntimeOptions& options,
+                     const Clock& clock, MotionLoop::Report report)
+    : m_cell(std::move(workcell)), m_workcell(*m_cell), m_options(options), m_clock(clock), m_report(std::move(report)) {
   if (!options.stream_cameras) return;
-  for (const auto& camera : workcell.cameras) m_streams.insert(camera.name);
+  for (const auto& camera : m_workcell.cameras) m_streams.insert(camera.name);
 }
 
-Result<std::shared_ptr<RobotCore>> RobotCore::create(const planning::Workcell& workcell,
+Result<std::shared_ptr<RobotCore>> RobotCore::create(std::shared_ptr<const planning::Workcell> workcell,
                                                      const RuntimeOptions& options, const Clock& clock,
                                                      MotionLoop::Report report) {
-  std::shared_ptr<RobotCore> core(new RobotCore(workcell, options, clock, std::move(report)));
+  std::shared_ptr<RobotCore> core(new RobotCore(std::move(workcell), options, clock, std::move(report)));
   if (options.mode == RobotMode::kReplay) {
     return Error{ErrorCode::kInvalidInput, "a replay has no robot to connect to"};
   }
@@ -130,8 +130,7 @@ void RobotCore::makeMotion() {
   const auto joints = m_workcell.armJointNames();
   m_gate = std::make_unique<hardware::MotionGate>(m_devices.arm, joints, m_workcell.arm_limits, m_clock,
                                                   m_options.gate, gateChecks(m_workcell));
-  m_loop = std::make_unique<MotionLoop>(m_devices.arm, *m_gate, joints, m_workcell.arm_limits, m_clock,
-                                        loopOptions(m_options), m_report);
+  m_loop = std::make_unique<MotionLoop>(m_devices.arm, *m_gate, m_cell, m_clock, loopOptions(m_options), m_report);
   m_gate->onStop([this](const std::string& source, const std::string& reason) {
     m_loop->noteStop();
     m_report("stop", source, reason);

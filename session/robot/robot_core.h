@@ -28,7 +28,7 @@ struct LinkReport {
 class RobotCore {
  public:
   /// As RobotRuntime::start().  Everything that is borrowed outlives it.
-  static Result<std::shared_ptr<RobotCore>> create(const planning::Workcell& workcell,
+  static Result<std::shared_ptr<RobotCore>> create(std::shared_ptr<const planning::Workcell> workcell,
                                                    const RuntimeOptions& options, const Clock& clock,
                                                    MotionLoop::Report report);
   ~RobotCore();
@@ -50,7 +50,7 @@ class RobotCore {
   void describeMotion(RuntimeStatus& status) const;
 
  private:
-  RobotCore(const planning::Workcell& workcell, const RuntimeOptions& options, const Clock& clock,
+  RobotCore(std::shared_ptr<const planning::Workcell> workcell, const RuntimeOptions& options, const Clock& clock,
             MotionLoop::Report report);
   Status connect();
   Status startProcess();
@@ -61,6 +61,7 @@ class RobotCore {
   void reportLink();
   bool standsStill() const;
 
+  const std::shared_ptr<const planning::Workcell> m_cell;
   const planning::Workcell& m_workcell;
   const RuntimeOptions m_options;
   const Clock& m_clock;

@@ -99,7 +99,7 @@ struct RobotRuntime::Impl {
   }
 
   Status startCore() {
-    auto made = RobotCore::create(*workcell, options, clock(),
+    auto made = RobotCore::create(workcell, options, clock(),
                                   [this](const std::string& kind, const std::string& source,
                                          const std::string& text) { queue(kind, source, text); });
     if (!made) return made.error();
@@ -175,6 +175,8 @@ RuntimeStatus RobotRuntime::status() const {
   out.rate = motion.rate;
   out.speed = motion.speed;
   out.notice = motion.notice;
+  out.jogging = motion.jogging;
+  out.jog = motion.jog;
   out.faults = core->faults();
   core->describeMotion(out);
   return out;
@@ -259,6 +261,20 @@ Status RobotRuntime::scrub(double cursor_s) {
   const auto core = m_impl->current();
   if (!core) return Impl::noRobot();
   return core->loop().scrub(cursor_s);
+}
+
+Status RobotRuntime::jog(const planning::JogCommand& command) {
+  const auto core = m_impl->current();
+  if (!core) return Impl::noRobot();
+  return core->loop().jog(command);
+}
+
+void RobotRuntime::releaseJog() {
+  if (const auto core = m_impl->current()) core->loop().releaseJog();
+}
+
+void RobotRuntime::setObstacles(const std::vector<planning::WorldObject>& objects) {
+  if (const auto core = m_impl->current()) core->loop().setObstacles(objects);
 }
 
 Trajectory RobotRuntime::trajectory() const {

@@ -20,6 +20,7 @@
 #include "core/result.h"
 #include "hardware/device.h"
 #include "hardware/motion_gate.h"
+#include "planning/jog/jogger.h"
 #include "planning/player/player.h"
 #include "planning/world/workcell.h"
 
@@ -75,6 +76,7 @@ struct RuntimeOptions {
   std::function<std::string(const std::string& url)> through;   ///< Puts a proxy in the way; empty: none.
   hardware::GateOptions gate;
   planning::PlayerOptions player;
+  planning::JogOptions jog;
   DeviceFactory make_devices;                      ///< Empty: the workcell's driver.
 };
 
@@ -89,6 +91,8 @@ struct RuntimeStatus {
   double rate = 0;                                 ///< d cursor / dt now.
   double speed = 1;                                ///< Wanted factor, -2 ... 2.
   hardware::GateStatus gate;
+  bool jogging = false;                            ///< A jog is held, or the arm still moves by one.
+  planning::JogReport jog;                         ///< What holds it back.
   bool moving = false;                             ///< The commanded velocity is not zero.
   bool stop_confirmed = false;                     ///< STOP is latched and the measured joints stand still.
   double tracking_error = 0;                       ///< Largest |commanded - measured| [rad or m].
@@ -148,6 +152,13 @@ class RobotRuntime {
   void setSpeed(double factor);
   Status scrub(double cursor_s);
   Trajectory trajectory() const;                   ///< The loaded one; empty if none.
+
+  /// Moves the arm as long as this is repeated (at least every 0.2 s), towards nothing that the model knows.
+  /// @returns kRefused: STOP is latched, a motion is played; kStale: no fresh joint state; kInvalidInput as Jogger.
+  Status jog(const planning::JogCommand& command);
+  void releaseJog();                               ///< The arm comes to rest within 0.3 s.
+  /// What a jog must not touch, in place of the workcell's objects.
+  void setObstacles(const std::vector<planning::WorldObject>& objects);
 
   /// STOP.  Latches; every motion ends at the STOP deceleration.  Any thread, no waiting.
   void stop(const std::string& source, const std::string& reason) noexcept;
