@@ -43,6 +43,7 @@ void MainWindow::makePanels() {
   m_features = new FeaturePanel(m_bench.targeting(), *m_actions, m_appearance);
   m_macros = new MacroPanel(m_bench, *m_actions, m_appearance);
   m_head = new HeadPanel(m_bench, *m_actions, m_appearance);
+  m_jog = new JogPanel(m_bench);
   m_motion = new MotionPanel(m_bench, *m_actions, m_appearance);
   m_stop = new StopPanel(m_bench, *m_actions, m_appearance);
   m_cameras = new CamerasPanel(m_bench, m_appearance);
@@ -68,12 +69,15 @@ void MainWindow::assemble() {
   m_docks->setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("cameras"), tr("Cameras"), m_cameras, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("features"), tr("Features"), m_features, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("jog"), tr("Jog arm"), m_jog, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("macros"), tr("Motions"), m_macros, Qt::BottomDockWidgetArea);
-  const auto docks = m_docks->findChildren<QDockWidget*>(QString(), Qt::FindDirectChildrenOnly);
-  m_docks->resizeDocks({docks[0]}, {132}, Qt::Horizontal);
-  m_docks->resizeDocks({docks[1], docks[2], docks[3]}, {560, 262, 310}, Qt::Horizontal);
-  m_docks->resizeDocks({docks[1], docks[2], docks[3]}, {190, 190, 190}, Qt::Vertical);
+  const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
+  m_docks->tabifyDockWidget(dock("features"), dock("jog"));
+  dock("features")->raise();
+  m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
+  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
+  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
   auto* column = m_frame->content();
   column->addWidget(m_strip);
   column->addWidget(m_notices);

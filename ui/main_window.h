@@ -13,6 +13,7 @@
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
 #include "ui/head_panel.h"
+#include "ui/jog_panel.h"
 #include "ui/macro_panel.h"
 #include "ui/motion_panel.h"
 #include "ui/notice_bar.h"
@@ -43,6 +44,7 @@ class MainWindow final : public QMainWindow {
   FeaturePanel* features() const { return m_features; }
   MacroPanel* macros() const { return m_macros; }
   HeadPanel* head() const { return m_head; }
+  JogPanel* jog() const { return m_jog; }
   MotionPanel* motion() const { return m_motion; }
   StopPanel* stopPanel() const { return m_stop; }
   CamerasPanel* cameras() const { return m_cameras; }
@@ -87,6 +89,7 @@ class MainWindow final : public QMainWindow {
   ScenePanel* m_scene;
   FeaturePanel* m_features;
   MacroPanel* m_macros;
+  JogPanel* m_jog;
   HeadPanel* m_head;
   MotionPanel* m_motion;
   StopPanel* m_stop;

@@ -28,6 +28,8 @@ void Workbench::connectParts() {
     m_aim.setFeed(m_robot.feed());
     m_plans.setJointSource([runtime] { return runtime->jointState(); });
     m_play.setRuntime(runtime);
+    m_jog.setRobot([runtime](const planning::JogCommand& command) { return runtime->jog(command); },
+                   [runtime] { runtime->releaseJog(); });
   });
   connect(&m_robot, &RobotSession::polled, this, [this] { m_play.refresh(m_robot.status()); });
   connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
@@ -36,6 +38,7 @@ void Workbench::connectParts() {
   connect(&m_plans, &session::PlanController::failed, this, &Workbench::said);
   connect(&m_play, &session::PlayController::failed, this, &Workbench::said);
   connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
+  connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
   connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
 }
 

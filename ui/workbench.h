@@ -11,6 +11,7 @@
 
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
+#include "session/controllers/jog_controller.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/play_controller.h"
 #include "session/controllers/snapshot_controller.h"
@@ -46,6 +47,7 @@ class Workbench final : public QObject {
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
   session::AimController& aim() { return m_aim; }
+  session::JogController& jog() { return m_jog; }
   session::Autosave& autosave() { return m_autosave; }
 
   /// Reads the workcell and starts its robot, both off the GUI thread.
@@ -84,6 +86,7 @@ class Workbench final : public QObject {
   session::PlanController m_plans;
   session::PlayController m_play;
   session::AimController m_aim;
+  session::JogController m_jog;
   session::Autosave m_autosave;
   std::array<QString, 2> m_pane_cameras;
 };

@@ -15,6 +15,7 @@
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
 #include "ui/head_panel.h"
+#include "ui/jog_panel.h"
 #include "ui/macro_panel.h"
 #include "ui/motion_panel.h"
 #include "ui/notice_bar.h"
@@ -266,6 +267,69 @@ TEST(FileActions, AnOpenedSketchTakesThePlaceOfAnotherWhichUndoBringsBack) {
   EXPECT_EQ(files.sketchFolder(), attic);
   rig.bench.history().redo();
   EXPECT_TRUE(files.sketchFolder().isEmpty());
+}
+
+struct JogRig : Rig {
+  JogRig() {
+    bench.setWorkcell(std::make_shared<const planning::Workcell>(*planning::loadBuiltInWorkcell()));
+    bench.jog().setRobot(
+        [this](const planning::JogCommand& command) {
+          sent.push_back(command);
+          return answer;
+        },
+        [this] { ++released; });
+    panel.resize(560, 170);
+    panel.show();
+  }
+  std::vector<planning::JogCommand> sent;
+  Status answer;
+  int released = 0;
+  JogPanel panel{bench};
+};
+
+TEST(JogPanel, HasAPairOfButtonsForEveryAxisAndSaysWhyTheyDoNotWork) {
+  JogRig rig;
+  for (const auto frame : {planning::JogFrame::kTool, planning::JogFrame::kBase, planning::JogFrame::kCamera, planning::JogFrame::kJoint}) {
+    rig.panel.setFrame(frame);
+    for (int axis = 0; axis < 6; ++axis) {
+      ASSERT_NE(rig.panel.button(axis, -1), nullptr);
+      EXPECT_FALSE(rig.panel.button(axis, 1)->isEnabled()) << "there is no robot";
+      EXPECT_FALSE(rig.panel.button(axis, 1)->toolTip().isEmpty());
+    }
+    EXPECT_EQ(rig.panel.button(6, 1), nullptr);
+  }
+  EXPECT_FALSE(rig.panel.message().isEmpty());
+}
+
+TEST(JogPanel, RepeatsAKeyUntilItIsLetGoOf) {
+  JogRig rig;
+  rig.panel.setFrame(planning::JogFrame::kBase);
+  rig.panel.setFocus();
+  QTest::keyPress(&rig.panel, Qt::Key_PageUp);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return rig.sent.size() >= 3; }, 5000));
+  EXPECT_EQ(rig.sent.back().linear, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(rig.sent.back().frame, planning::JogFrame::kBase);
+  QTest::keyRelease(&rig.panel, Qt::Key_PageUp);
+  EXPECT_EQ(rig.released, 1);
+  const std::size_t before = rig.sent.size();
+  QTest::qWait(200);
+  EXPECT_EQ(rig.sent.size(), before);
+  QTest::keyPress(&rig.panel, Qt::Key_Right, Qt::ShiftModifier);
+  EXPECT_EQ(rig.sent.back().angular, Eigen::Vector3d(0, -1, 0));
+  rig.panel.hide();
+  EXPECT_EQ(rig.released, 2) << "a hidden panel holds nothing";
+}
+
+TEST(JogPanel, LetsGoWhenTheRobotRefuses) {
+  JogRig rig;
+  rig.answer = Status(ErrorCode::kRefused, "jog: a motion is being played; pause it first");
+  QSignalSpy said(&rig.bench, &Workbench::said);
+  rig.panel.setFocus();
+  QTest::keyPress(&rig.panel, Qt::Key_Up);
+  EXPECT_EQ(rig.sent.size(), 1u);
+  EXPECT_FALSE(rig.bench.jog().held());
+  ASSERT_EQ(said.size(), 1);
+  EXPECT_TRUE(said[0][0].toString().contains(QStringLiteral("pause it first")));
 }
 
 }  // namespace

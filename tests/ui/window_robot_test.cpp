@@ -1,8 +1,10 @@
 // The whole window with the real virtual robot as a child process: the task, and what becomes of faults.
 #include <csignal>
 
+#include <QDockWidget>
 #include <QLineEdit>
 #include <QTest>
+#include <QToolButton>
 
 #include "tests/ui/window_fixture.h"
 #include "ui/demonstration.h"
@@ -82,6 +84,29 @@ TEST_F(WindowWithRobot, SpaceStopsAMovingArmFromATextField) {
   EXPECT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().gate.stopped; }, 2));
   EXPECT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().status().stop_confirmed; }, 3));
   EXPECT_FALSE(bench->play().state().can_play);
+}
+
+TEST_F(WindowWithRobot, JogsTheArmWhileAButtonIsHeld) {
+  openWithRobot({1920, 1080});
+  ASSERT_TRUE(hand.hold(window->stopPanel()->resetButton(), [this] { return !bench->robot().status().gate.stopped; }, 10));
+  auto* panel = window->jog();
+  window->findChild<QDockWidget*>(QStringLiteral("jog"))->raise();
+  SimulatedHand::pump(100);
+  panel->setFrame(planning::JogFrame::kBase);
+  const auto height = [this] {
+    const auto& cell = bench->robot().runtime()->workcell();
+    return cell.model->forward(*bench->robot().runtime()->configuration(), *cell.model->linkIndex(cell.arm.tip_link)).translation().z();
+  };
+  auto* up = panel->button(2, 1);
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return up->isEnabled(); }, 10)) << panel->message().toStdString();
+  const double before = height();
+  ASSERT_TRUE(hand.hold(up, [&] { return height() > before + 0.02; }, 20)) << panel->message().toStdString();
+  look(QStringLiteral("jog"));
+  EXPECT_TRUE(SimulatedHand::waitFor([this] { return !bench->robot().status().jogging; }, 5));
+  const double after = height();
+  SimulatedHand::pump(500);
+  EXPECT_NEAR(height(), after, 0.003);
+  EXPECT_EQ(bench->robot().status().gate.refused, 0u) << bench->robot().status().gate.reason;
 }
 
 }  // namespace
