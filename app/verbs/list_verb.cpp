@@ -1,5 +1,6 @@
 // list, completion
 #include "app/verbs/cli.h"
+#include "core/text.h"
 #include "planning/macros/macro.h"
 #include "planning/world/scenario.h"
 #include "planning/world/workcell.h"
@@ -11,20 +12,8 @@ struct ListOptions {
   std::string what, workcell;
 };
 
-Result<std::vector<std::vector<std::string>>> macroRows(const ListOptions& options) {
-  const auto workcell = options.workcell.empty() ? planning::loadBuiltInWorkcell() : planning::loadWorkcell(options.workcell);
-  if (!workcell) return workcell.error();
-  std::vector<std::vector<std::string>> rows = {{"name", "takes", "description"}};
-  for (const auto& macro : planning::makeMacros(*workcell)) {
-    const auto info = macro->info();
-    rows.push_back({info.name, info.takes ? vision::toString(*info.takes) : "nothing", info.description});
-  }
-  return rows;
-}
-
 Result<std::vector<std::vector<std::string>>> rowsOf(const ListOptions& options) {
   using Rows = std::vector<std::vector<std::string>>;
-  if (options.what == "macros") return macroRows(options);
   if (options.what == "scenarios") {
     Rows rows = {{"name", "description"}};
     for (const auto& scenario : planning::listScenarios()) rows.push_back({scenario.name, scenario.description});
@@ -40,7 +29,32 @@ Result<std::vector<std::vector<std::string>>> rowsOf(const ListOptions& options)
               {"rosbridge", "Any ROS 1 or ROS 2 robot that runs rosbridge: arm, gripper, pan-tilts, cameras"}};
 }
 
+// Macros have more to tell than a row of a table: their parameters.
+Result<Answer> runListMacros(const ListOptions& options) {
+  const auto workcell = options.workcell.empty() ? planning::loadBuiltInWorkcell() : planning::loadWorkcell(options.workcell);
+  if (!workcell) return workcell.error();
+  Answer answer;
+  std::vector<std::vector<std::string>> rows = {{"name", "takes", "description"}};
+  auto& list = answer.json["macros"] = nlohmann::json::array();
+  for (const auto& macro : planning::makeMacros(*workcell)) {
+    const auto info = macro->info();
+    const std::string takes = info.takes ? vision::toString(*info.takes) : "nothing";
+    nlohmann::json parameters = nlohmann::json::array();
+    rows.push_back({info.name, takes, info.description});
+    for (const auto& p : info.parameters) {
+      parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.value}, {"min", p.lower}, {"max", p.upper}, {"description", p.description}});
+      rows.push_back({"", "  " + p.name + " = " + formatNumber(p.value) + (p.unit == "1" || p.unit == "choice" ? "" : " " + p.unit), p.description});
+    }
+    nlohmann::json entry{{"name", info.name}, {"title", info.title}, {"takes", takes}, {"description", info.description}, {"parameters", parameters}};
+    if (info.accuracy_need > 0) entry["accuracy_need"] = info.accuracy_need;
+    list.push_back(std::move(entry));
+  }
+  answer.table = tableText(rows);
+  return answer;
+}
+
 Result<Answer> runList(const ListOptions& options) {
+  if (options.what == "macros") return runListMacros(options);
   const auto rows = rowsOf(options);
   if (!rows) return rows.error();
   Answer answer;

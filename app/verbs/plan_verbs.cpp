@@ -2,6 +2,7 @@
 #include "app/verbs/cli.h"
 #include "core/text.h"
 #include "planning/macros/macro.h"
+#include "planning/macros/macro_arguments.h"
 #include "planning/macros/plan_report.h"
 #include "planning/motion/check_trajectory.h"
 #include "planning/trajectory/trajectory_file.h"
@@ -15,6 +16,7 @@ using planning::Workcell;
 
 struct PlanOptions {
   std::string workcell, macro, feature, name, start = "home", out;
+  std::vector<std::string> parameters;
   unsigned seed = 1;
   double budget_s = 5;
 };
@@ -91,8 +93,24 @@ std::string planTable(const planning::Plan& plan) {
                      formatFixed(plan.min_clearance * 1e3, 1) + " mm, velocity " + formatFixed(100 * plan.max_velocity_ratio, 0) +
                      " %, acceleration " + formatFixed(100 * plan.max_acceleration_ratio, 0) + " % of the limits; " + plan.go + "\n";
   if (!plan.accuracy_note.empty()) text += plan.accuracy_note + "\n";
+  for (const auto& [name, value] : plan.figures) text += name + ": " + formatFixed(value, 4) + "\n";
   for (const auto& note : plan.notes) text += "note: " + note + "\n";
   return text;
+}
+
+// "name=value", in the parameter's unit.
+Result<std::map<std::string, double>> argumentsOption(const planning::MacroInfo& info, const std::vector<std::string>& given) {
+  std::map<std::string, double> out;
+  for (const auto& text : given) {
+    const std::size_t equals = text.find('=');
+    const auto value = equals == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(equals + 1));
+    if (!value) return Error{ErrorCode::kInvalidInput, "--param: \"" + text + "\" is not name=value with a number"};
+    out[text.substr(0, equals)] = *value;
+  }
+  if (const auto good = planning::MacroArguments::from(info, out); !good) {
+    return Error{ErrorCode::kInvalidInput, "--param: " + good.error().message};
+  }
+  return out;
 }
 
 Result<planning::Plan> makePlan(const Workcell& workcell, const PlanOptions& options) {
@@ -117,7 +135,10 @@ Result<planning::Plan> makePlan(const Workcell& workcell, const PlanOptions& opt
   }
   const auto start = startOption(workcell, options.start);
   if (!start) return start.error();
+  const auto arguments = argumentsOption(macro->info(), options.parameters);
+  if (!arguments) return arguments.error();
   planning::PlanContext context;
+  context.arguments = *arguments;
   context.workcell = &workcell;
   context.start = *start;
   context.seed = options.seed;
@@ -160,6 +181,7 @@ void addPlanVerbs(Cli& cli) {
         verb.add_option("--macro", options.macro, "Name of the macro (longarm list macros)")->required();
         verb.add_option("--feature", options.feature, "Feature to act on, as `target` prints it");
         verb.add_option("--name", options.name, "Which feature of that file (default: the first)");
+        verb.add_option("--param", options.parameters, "Parameter of the macro as name=value, SI units and radians; may be repeated");
         verb.add_option("--start", options.start, "Canned pose, or the arm's joints comma separated")->capture_default_str();
         verb.add_option("--seed", options.seed, "Seed of the planner")->capture_default_str();
         verb.add_option("--budget", options.budget_s, "Give up after this many seconds")->check(CLI::Range(0.05, 600.0))->capture_default_str();

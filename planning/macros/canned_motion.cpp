@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "core/text.h"
+#include "planning/macros/macro_arguments.h"
 #include "planning/macros/planning_run.h"
 #include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
@@ -122,6 +123,9 @@ Plan CannedMotion::plan(const PlanContext& context, const vision::Feature* featu
   try {
     if (feature != nullptr) {
       return PlanningRun(context, m_name).fail(PlanStatus::kBadFeature, "\"" + m_name + "\" takes no feature: select nothing.");
+    }
+    if (const auto arguments = MacroArguments::from(info(), context.arguments); !arguments) {
+      return PlanningRun(context, m_name).fail(PlanStatus::kLimits, "Cannot plan: " + arguments.error().message + ".");
     }
     return CannedRun(context, m_name, m_joints).run();
   } catch (const std::exception& e) {

@@ -6,7 +6,9 @@
 
 #include "core/text.h"
 #include "planning/macros/grasp_search.h"
+#include "planning/macros/macro_arguments.h"
 #include "planning/macros/reach_advice.h"
+#include "planning/macros/task_planner.h"
 #include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
 
@@ -24,7 +26,7 @@ class GrabRun {
 
   Plan run() {
     if (!m_run.begin() || !readPipe() || !checkGripper()) return m_run.plan();
-    openGripper();
+    m_q = withGripperOpen(m_run);
     const WorldObject obstacle = pipeObstacle();
     const auto transit_world = m_run.makeWorld({obstacle}, m_q);
     const auto approach_world = m_run.makeWorld({obstacle}, m_q);
@@ -65,17 +67,6 @@ class GrabRun {
     }
     if (!wrong.empty()) m_run.fail(PlanStatus::kBadFeature, "Cannot grab: " + wrong + ".");
     return wrong.empty();
-  }
-
-  void openGripper() {
-    m_q = m_run.context().start;
-    const auto& gripper = *m_run.workcell().gripper;
-    const auto joint = m_run.model().jointIndex(gripper.joint);
-    if (!joint) return;
-    const int index = m_run.model().joints()[static_cast<std::size_t>(*joint)].q_index;
-    if (index < 0) return;
-    if (std::abs(m_q[index] - gripper.open) > 1e-3) m_run.plan().notes.push_back("Open the gripper before this motion: it is planned open.");
-    m_q[index] = gripper.open;
   }
 
   WorldObject pipeObstacle() const {
@@ -234,7 +225,10 @@ GrabPipe::GrabPipe(GrabPipeOptions options) : m_options(options) {}
 
 MacroInfo GrabPipe::info() const {
   return {"grab_pipe", "Grab Pipe", "Reaches for the marked pipe from above and closes on its middle.",
-          vision::FeatureKind::kLine};
+          vision::FeatureKind::kLine,
+          {{"radius", "m", m_options.radius, 0.001, 0.2, "Of the pipe."},
+           {"stand_off", "m", m_options.standoff, 0.02, 0.3, "Length of the straight last leg."}},
+          0.03};
 }
 
 Plan GrabPipe::plan(const PlanContext& context, const vision::Feature* feature) const {
@@ -242,7 +236,14 @@ Plan GrabPipe::plan(const PlanContext& context, const vision::Feature* feature) 
     if (feature == nullptr) {
       return PlanningRun(context, "grab_pipe").fail(PlanStatus::kBadFeature, "Grab Pipe needs a line: mark the pipe first.");
     }
-    return GrabRun(context, *feature, m_options).run();
+    const auto arguments = MacroArguments::from(info(), context.arguments);
+    if (!arguments) {
+      return PlanningRun(context, "grab_pipe").fail(PlanStatus::kLimits, "Cannot plan: " + arguments.error().message + ".");
+    }
+    GrabPipeOptions options = m_options;
+    options.radius = (*arguments)["radius"];
+    options.standoff = (*arguments)["stand_off"];
+    return GrabRun(context, *feature, options).run();
   } catch (const std::exception& e) {
     return PlanningRun(context, "grab_pipe").fail(PlanStatus::kNoPath, std::string("Planning failed inside: ") + e.what());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "planning/macros/canned_motion.h"
+#include "planning/macros/feature_macros.h"
 #include "planning/macros/grab_pipe.h"
 
 namespace longarm::planning {
@@ -19,7 +20,24 @@ std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
     const auto pose = workcell.poses.find(name);
     if (pose != workcell.poses.end()) out.push_back(std::make_unique<CannedMotion>(name, pose->second));
   }
+  out.push_back(makeLookAt(workcell));
+  out.push_back(makeTouch());
+  out.push_back(makeMoveAbove());
+  out.push_back(makePlaceHere());
   out.push_back(std::make_unique<GrabPipe>());
+  out.push_back(makeMoveAroundAxis());
+  out.push_back(makeApproachFromSide());
+  out.push_back(makeMoveParallel());
+  out.push_back(makeAimAlongAxis());
+  out.push_back(makePlaceDisruptor());
+  out.push_back(makeInsertAlong());
+  out.push_back(makeExtractAlong());
+  out.push_back(makeSurfaceScan());
+  out.push_back(makeFollowPerimeter());
+  out.push_back(makePress());
+  out.push_back(makeGraspByFaces());
+  out.push_back(makePushFace());
+  out.push_back(makeScanFaces());
   return out;
 }
 

@@ -13,18 +13,31 @@
 
 namespace longarm::planning {
 
+/// A number that an operator or script may set; given by name in PlanContext::arguments.
+struct MacroParameter {
+  std::string name;                               ///< "stand_off": stable, lower case.
+  std::string unit;                               ///< "m", "rad", "m/s"; "1": a share or count; "choice": whole numbers.
+  double value = 0;                               ///< Default.
+  double lower = 0, upper = 0;                    ///< Allowed range, both included.
+  std::string description;                        ///< One sentence.
+};
+
 struct MacroInfo {
   std::string name;                               ///< "grab_pipe": stable, lower case.
   std::string title;                              ///< "Grab Pipe"
   std::string description;                        ///< One sentence for a tooltip.
   std::optional<vision::FeatureKind> takes;       ///< Empty: available when nothing is selected.
+  std::vector<MacroParameter> parameters = {};    ///< In the order to show them.
+  /// How well the feature must be known, 95 % [m]: up to it "go", up to three times it "ask", beyond "no_go".  Grab
+  /// Pipe judges across its fingers, by the gripper and radius at hand.  0: takes no feature.
+  double accuracy_need = 0;
 };
 
 class Macro {
  public:
   virtual ~Macro() = default;
   virtual MacroInfo info() const = 0;
-  /// Plans; never throws, answers within context.budget_s, honours context.cancel within 100 ms.
+  /// Plans with context.arguments (a wrong one ends it as kLimits); never throws, answers within context.budget_s, honours context.cancel within 100 ms.
   /// @pre feature is given exactly when info().takes is.
   virtual Plan plan(const PlanContext& context, const vision::Feature* feature) const = 0;
 };

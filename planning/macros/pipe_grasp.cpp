@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "planning/macros/feature_geometry.h"
 
 namespace longarm::planning {
 namespace {
@@ -11,15 +12,6 @@ namespace {
 constexpr double kShortest = 0.02;       // [m]
 constexpr double kLongest = 20;
 constexpr double kUpright = 0.978;       // |cos| of the angle to the vertical: 12 degrees
-
-Result<Pose> poseOfParent(const std::string& parent, const RobotModel& model, const Eigen::VectorXd& q) {
-  const std::string& root = model.links()[static_cast<std::size_t>(model.rootLink())].name;
-  if (parent.empty() || parent == root || parent == "world") return Pose::Identity();
-  const auto link = model.linkIndex(parent);
-  if (link) return model.forward(q, *link);
-  return Error{ErrorCode::kInvalidInput, "the feature is given in \"" + parent + "\", which is no link of " +
-                                             model.name() + "; give it in \"" + root + "\""};
-}
 
 // Approach direction nearest to straight down that is square to the pipe.
 Eigen::Vector3d firstApproach(const Pipe& pipe) {

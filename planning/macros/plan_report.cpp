@@ -32,6 +32,8 @@ nlohmann::json toJson(const Plan& plan, const std::string& root) {
                      {"go", plan.go},
                      {"accuracy_note", plan.accuracy_note},
                      {"notes", plan.notes},
+                     {"figures", plan.figures},
+                     {"pan_tilt", plan.pan_tilt},
                      {"stages", std::move(stages)}};
   if (plan.failed_waypoint >= 0) out["failed_waypoint"] = plan.failed_waypoint;
   if (plan.failed_pose) out["failed_pose"] = poseJson(*plan.failed_pose, root);

@@ -12,7 +12,8 @@
 namespace longarm::planning {
 
 /// status, reason, macro, failed_waypoint, failed_pose, planning_seconds, min_clearance, duration,
-/// max_velocity_ratio, max_acceleration_ratio, goal, go, accuracy_note, notes, stages.
+/// max_velocity_ratio, max_acceleration_ratio, goal, go, accuracy_note, notes, figures, pan_tilt,
+/// stages.
 /// @param root  Name of the root link: parent of the poses.
 nlohmann::json toJson(const Plan& plan, const std::string& root = "base_link");
 

@@ -57,7 +57,7 @@ std::string reachAdvice(const Reach& reach, const std::string& what, const Eigen
   if (distance < kTooNear * reach.length) {
     return facts + ": it is too near, drive " + metres(-wayToDrive(offset, 0.5 * reach.length)) + " back";
   }
-  return facts + ", but the hand cannot be turned as the grasp needs it there: drive so that it lies about " +
+  return facts + ", but the hand cannot be turned there as it must be: drive so that it lies about " +
          metres(0.6 * reach.length) + " straight ahead of the arm";
 }
 

@@ -4,6 +4,7 @@
 /// Plans: what a macro produces, and why it could not.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,8 @@ struct Plan {
   std::string go = "go";                          ///< "go", "ask", "no_go": feature accuracy against the macro's need.
   std::string accuracy_note;                      ///< Why it is not "go".
   std::vector<std::string> notes;                 ///< Things the operator should know.
+  std::map<std::string, double> figures;          ///< What the macro measured of its plan ("coverage", "passes", ...).
+  std::map<std::string, double> pan_tilt;         ///< Joints of a pan-tilt to move to beside the arm [rad]; usually empty.
 
   bool ok() const { return status == PlanStatus::kOk; }
 };
@@ -58,6 +61,7 @@ struct PlanContext {
   const Workcell* workcell = nullptr;
   std::vector<WorldObject> objects;               ///< Beyond the workcell's own.
   Eigen::VectorXd start;                          ///< Full configuration q.
+  std::map<std::string, double> arguments;        ///< Of the macro, by MacroParameter::name; others take their default.
   unsigned seed = 1;
   double budget_s = 5;
   CancelToken cancel;

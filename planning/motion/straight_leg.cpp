@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/text.h"
+#include "planning/trajectory/joint_path.h"
 
 namespace longarm::planning {
 namespace {
@@ -23,17 +24,17 @@ Vector6d poseError(const Pose& X_goal, const Pose& X) {
 struct Follower {
   const ArmSpace& space;
   const LegOptions& options;
-  Pose X_start, X_end;
+  std::function<Pose(double)> X_RT;      // by the share of the way
   double length;
   StraightLeg leg;
 
-  // Goes from the last waypoint to parameter `s`, halving where the joints would leave the line.
+  // Goes from the last waypoint to parameter `s`, halving where the joints would leave the path.
   bool advance(double from, double s, int depth) {
     Eigen::VectorXd arm = leg.waypoints.back();
-    if (!solveNear(space, interpolate(X_start, X_end, s), arm)) return fail(from, "is out of reach or a joint limit");
+    if (!solveNear(space, X_RT(s), arm)) return fail(from, "is out of reach or a joint limit");
     const Eigen::VectorXd before = leg.waypoints.back();
     const Pose X_middle = space.tip(0.5 * (before + arm));
-    const Vector6d error = poseError(interpolate(X_start, X_end, 0.5 * (from + s)), X_middle);
+    const Vector6d error = poseError(X_RT(0.5 * (from + s)), X_middle);
     const double jump = (arm - before).cwiseAbs().maxCoeff();
     if (error.tail<3>().norm() > options.position_tolerance || error.head<3>().norm() > options.angle_tolerance ||
         jump > options.max_joint_step) {
@@ -62,7 +63,8 @@ struct Follower {
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
     const double median = sorted[sorted.size() / 2];
     for (std::size_t i = 0; i < slopes.size(); ++i) {
-      if (slopes[i] <= 3 * median) continue;
+      const double step = (leg.waypoints[i + 1] - leg.waypoints[i]).cwiseAbs().maxCoeff();
+      if (slopes[i] <= 3 * median || step <= options.even_step) continue;
       leg.fraction = leg.way[i] / leg.way.back();
       return fail(leg.fraction, "turns a joint more than three times as fast as the rest");
     }
@@ -91,7 +93,8 @@ StraightLeg followLine(const ArmSpace& space, const Eigen::VectorXd& start, cons
   const Pose X_start = space.tip(start);
   const double distance = (X_end.translation() - X_start.translation()).norm();
   const double angle = angleBetween(X_start.linear(), X_end.linear());
-  Follower follower{space, options, X_start, X_end, distance > 1e-9 ? distance : angle, {}};
+  const auto X_RT = [&](double share) { return interpolate(X_start, X_end, share); };
+  Follower follower{space, options, X_RT, distance > 1e-9 ? distance : angle, {}};
   follower.leg.waypoints = {start};
   follower.leg.way = {0};
   if (follower.length < 1e-9) {
@@ -106,6 +109,33 @@ StraightLeg followLine(const ArmSpace& space, const Eigen::VectorXd& start, cons
   }
   follower.leg.ok = follower.evenSteps();
   return follower.leg;
+}
+
+StraightLeg followPath(const ArmSpace& space, const Eigen::VectorXd& start, const std::function<Pose(double)>& X_RT,
+                       const std::vector<double>& stations, const LegOptions& options) {
+  const double length = stations.back();
+  Follower follower{space, options, [&](double share) { return X_RT(share * length); }, length, {}};
+  follower.leg.waypoints = {start};
+  follower.leg.way = {0};
+  for (std::size_t i = 1; i < stations.size(); ++i) {
+    if (!follower.advance(stations[i - 1] / length, stations[i] / length, 0)) return follower.leg;
+  }
+  follower.leg.ok = follower.evenSteps();
+  return follower.leg;
+}
+
+LegDeviation splineDeviation(const ArmSpace& space, const StraightLeg& leg, const std::function<Pose(double)>& X_RT) {
+  const SplinePath path(leg.way, leg.waypoints);
+  LegDeviation worst;
+  for (std::size_t i = 1; i < leg.way.size(); ++i) {
+    for (const double share : {0.25, 0.5, 0.75}) {
+      const double s = leg.way[i - 1] + share * (leg.way[i] - leg.way[i - 1]);
+      const Vector6d error = poseError(X_RT(s), space.tip(path.at(s).q));
+      worst.position = std::max(worst.position, error.tail<3>().norm());
+      worst.angle = std::max(worst.angle, error.head<3>().norm());
+    }
+  }
+  return worst;
 }
 
 }  // namespace longarm::planning

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// Straight legs: joint waypoints that carry the tool along a line.
+/// Straight legs, and other paths of the tool: the joint waypoints that carry it along them.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct LegOptions {
   double position_tolerance = 1e-3;      ///< Of the tool between waypoints [m].
   double angle_tolerance = 0.01;         ///< [rad]
   double max_joint_step = 0.1745;        ///< Between waypoints: more is a change of branch [rad].
+  double even_step = 0;                  ///< Steps up to this need not be even [rad].
 };
 
 struct StraightLeg {
@@ -36,6 +38,18 @@ struct StraightLeg {
 /// would have to change its branch.  Collisions are not looked at.
 StraightLeg followLine(const ArmSpace& space, const Eigen::VectorXd& start, const Pose& X_end,
                        const LegOptions& options = {});
+
+/// The same along any path of the tool.
+/// @param X_RT      Pose of the tool after a way of s [m]; at 0 it is where `start` holds the tool.
+/// @param stations  Increasing from 0: where waypoints are wanted; `step` of the options does not count.
+StraightLeg followPath(const ArmSpace& space, const Eigen::VectorXd& start, const std::function<Pose(double)>& X_RT,
+                       const std::vector<double>& stations, const LegOptions& options = {});
+
+/// How far the tool leaves the path between the waypoints when they are joined by a cubic spline, as timing does it.
+struct LegDeviation {
+  double position = 0, angle = 0;        ///< [m], [rad]
+};
+LegDeviation splineDeviation(const ArmSpace& space, const StraightLeg& leg, const std::function<Pose(double)>& X_RT);
 
 /// Newton steps from `start` to the pose, within the limits; false if they do not arrive (1e-7 m, 1e-7 rad).
 bool solveNear(const ArmSpace& space, const Pose& X, Eigen::VectorXd& arm, int iterations = 12);

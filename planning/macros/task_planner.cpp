@@ -1,0 +1,223 @@
+#include "planning/macros/task_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/text.h"
+#include "planning/motion/path_planner.h"
+#include "planning/motion/timed_motion.h"
+#include "planning/trajectory/time_parameterization.h"
+
+namespace longarm::planning {
+namespace {
+
+constexpr std::size_t kEnough = 6;       // ways that one search for a free motion is given
+constexpr std::size_t kEnoughOfLong = 3;
+constexpr double kLong = 0.6;            // stages of that length in all are long [m]
+constexpr int kIterations = 4000;
+constexpr double kNoWay = 1e-6;          // [rad]
+
+std::size_t enoughFor(const TaskPart& part) {
+  double length = 0;
+  for (const auto& stage : part.tasks.front().stages) length += stage.path.length();
+  return length > kLong ? kEnoughOfLong : kEnough;
+}
+
+// End of the tasks that are as good as task `first`.
+std::size_t endOfGroup(const TaskPart& part, std::size_t first) {
+  std::size_t last = first;
+  while (last < part.tasks.size() && part.tasks[last].preference == part.tasks[first].preference) ++last;
+  return last;
+}
+
+}  // namespace
+
+Eigen::VectorXd withGripperOpen(PlanningRun& run) {
+  Eigen::VectorXd q = run.context().start;
+  const auto& gripper = run.workcell().gripper;
+  if (!gripper) return q;
+  const auto joint = run.model().jointIndex(gripper->joint);
+  if (!joint) return q;
+  const int index = run.model().joints()[static_cast<std::size_t>(*joint)].q_index;
+  if (index < 0) return q;
+  if (std::abs(q[index] - gripper->open) > 1e-3) run.plan().notes.push_back("Open the gripper before this motion: it is planned open.");
+  q[index] = gripper->open;
+  return q;
+}
+
+Plan TaskPlanner::plan() {
+  m_q = m_job.open_gripper ? withGripperOpen(m_run) : m_run.context().start;
+  const auto free_world = m_run.makeWorld(m_job.obstacles, m_q);
+  const auto touch_world = m_run.makeWorld(m_job.obstacles, m_q);
+  auto& notes = m_run.plan().notes;      // both worlds look at the same start and say the same
+  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+  if (m_run.workcell().gripper) {
+    for (const auto& name : m_job.touchable) touch_world->allow(name, m_run.workcell().gripper->links);
+  }
+  touch_world->setPadding(std::min(m_job.touch_padding, touch_world->padding()), touch_world->selfPadding());
+  Contact contact;
+  if (free_world->touching(m_q, &contact)) {
+    return m_run.fail(PlanStatus::kStartInCollision,
+                      "Where the arm stands, " + contact.sentence() + ". Move it clear of " + m_job.subject + " first.", 0);
+  }
+  const ArmSpace free(m_run.workcell(), *free_world, m_q), touching(m_run.workcell(), *touch_world, m_q);
+  TaskSearch ways(m_run, free, touching);
+  if (!search(ways, free)) {
+    m_run.plan().min_clearance = 0;
+    if (!interrupted()) return explain(ways.refusals(), m_job.parts[m_failed_part]);
+    const PlanStatus status = m_run.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
+    return m_run.fail(status, interruption(status, m_run.context().budget_s));
+  }
+  Plan& plan = m_run.plan();
+  measureRatios(m_run.workcell(), plan);
+  plan.goal = free.tip(plan.trajectory.points.back().positions);
+  return m_run.finish();
+}
+
+// Whether any way of a part can be followed at all; from where does not matter yet.
+bool TaskPlanner::possible(TaskSearch& search, const TaskPart& part) {
+  for (std::size_t first = 0; first < part.tasks.size() && !interrupted();) {
+    const std::size_t last = endOfGroup(part, first);
+    if (!search.find(part, first, last, m_run.start(), 1).empty()) return true;
+    first = last;
+  }
+  return false;
+}
+
+bool TaskPlanner::search(TaskSearch& search, const ArmSpace& free) {
+  m_run.plan().min_clearance = 1e9;
+  std::vector<std::size_t> doable;
+  for (std::size_t k = 0; k < m_job.parts.size(); ++k) {
+    const TaskPart& part = m_job.parts[k];
+    m_failed_part = k;
+    // A part alone is looked at once, when it is planned.
+    if (m_job.parts.size() == 1 || possible(search, part)) {
+      doable.push_back(k);
+    } else if (!part.optional) {
+      return false;
+    } else {
+      m_run.plan().notes.push_back(part.name + " cannot be done from here and is left out.");
+    }
+    if (interrupted()) return false;
+  }
+  if (doable.empty()) return false;
+  Eigen::VectorXd from = m_run.start();
+  for (const std::size_t k : doable) {
+    m_failed_part = k;
+    m_any_goal = false;
+    if (!searchPart(search, free, k, from)) return false;
+    from = m_run.plan().trajectory.points.back().positions;
+  }
+  return true;
+}
+
+bool TaskPlanner::searchPart(TaskSearch& search, const ArmSpace& free, std::size_t k, const Eigen::VectorXd& from) {
+  const TaskPart& part = m_job.parts[k];
+  const double done = static_cast<double>(k) / static_cast<double>(m_job.parts.size());
+  for (std::size_t first = 0; first < part.tasks.size() && !interrupted();) {
+    m_run.progress(done + 0.1 / static_cast<double>(m_job.parts.size()), "looking for ways to hold the tool");
+    const std::size_t last = endOfGroup(part, first);
+    std::vector<FollowedTask> found = search.find(part, first, last, from, enoughFor(part));
+    first = last;
+    if (found.empty() || interrupted()) continue;
+    m_any_goal = true;
+    m_run.progress(done + 0.4 / static_cast<double>(m_job.parts.size()), "searching a path");
+    if (move(free, search, part, std::move(found), from)) return true;
+  }
+  return false;
+}
+
+// Plans to any of the entries; one whose timed motion cannot be certified is left out and the rest tried again.
+bool TaskPlanner::move(const ArmSpace& free, TaskSearch& search, const TaskPart& part, std::vector<FollowedTask> found,
+                       const Eigen::VectorXd& from) {
+  for (int k = 0; k < 3 && !found.empty(); ++k) {
+    std::size_t chosen = 0;
+    std::vector<Eigen::VectorXd> way;
+    if (!part.from_here) {
+      PathRequest request;
+      request.start = from;
+      for (const auto& task : found) request.goals.push_back(task.entry);
+      request.seed = m_run.context().seed;
+      request.max_iterations = kIterations;
+      request.deadline_s = m_run.deadline_s();
+      request.cancel = m_run.context().cancel;
+      PathAnswer path = planPath(free, request);
+      if (path.status != PlanStatus::kOk) return false;
+      chosen = path.goal;
+      way = std::move(path.waypoints);
+    }
+    if (time(free, search, part, found[chosen], way)) return true;
+    found.erase(found.begin() + static_cast<long>(chosen));
+  }
+  return false;
+}
+
+bool TaskPlanner::time(const ArmSpace& free, TaskSearch& search, const TaskPart& part, const FollowedTask& task,
+                       const std::vector<Eigen::VectorXd>& way) {
+  const Workcell& cell = m_run.workcell();
+  Plan next = m_run.plan();
+  const std::string prefix = m_job.parts.size() > 1 ? part.name + ": " : "";
+  const auto add = [&](const std::string& name, bool straight, const ArmSpace& space, const Trajectory& piece) {
+    const double start = next.trajectory.duration();
+    appendStage(next, prefix + name, straight, piece);
+    next.min_clearance = std::min(next.min_clearance, leastClearance(space, next.trajectory, start, next.trajectory.duration()));
+  };
+  if (way.size() > 1 && pathLength(way) > kNoWay) {
+    const auto timed = timedPath(cell, free, way, {cell.max_tool_speed});
+    if (!timed) return false;
+    add("transit", false, free, *timed);
+  }
+  for (std::size_t k = 0; k < task.legs.size(); ++k) {
+    if (interrupted()) return false;
+    const ToolStage& stage = task.task->stages[k];
+    const auto timed = timedLeg(cell, search.spaceOf(stage), task.legs[k], {std::min(stage.speed, cell.max_tool_speed)});
+    if (!timed) return false;
+    add(stage.name, stage.straight, search.spaceOf(stage), *timed);
+  }
+  if (next.trajectory.empty()) {
+    next.notes.push_back("The tool is already there.");
+    add("transit", false, free, standStill(cell.armJointNames(), task.entry, 0.1));
+  }
+  if (!task.task->note.empty()) next.notes.push_back(task.task->note);
+  m_run.plan() = std::move(next);
+  return true;
+}
+
+Plan TaskPlanner::explain(const TaskRefusals& refusals, const TaskPart& part) {
+  const std::optional<Pose> pose = refusals.pose;
+  if (m_any_goal) {
+    return m_run.fail(PlanStatus::kNoPath,
+                      "The task can be done, but no collision-free way to its beginning was found in " +
+                          formatFixed(m_run.elapsed(), 1) + " s. Start from another pose (ready), or clear the space around " +
+                          m_job.subject + ".",
+                      0, pose);
+  }
+  if (refusals.stopped > 0) return explainStop(refusals);
+  if (refusals.colliding > 0) {
+    return m_run.fail(PlanStatus::kGoalInCollision,
+                      "However the tool is held at " + m_job.subject + ", the arm would collide: " + refusals.contact.sentence() +
+                          ". Clear the space there, give more stand-off, or drive to another side.",
+                      0, pose);
+  }
+  const Pose wanted = pose.value_or(part.tasks.front().X_entry);
+  return m_run.fail(PlanStatus::kUnreachable,
+                    "It is out of reach: " + reachAdvice(reachOf(m_run.workcell(), m_q), m_job.subject, m_job.place) + ".", 0, wanted);
+}
+
+Plan TaskPlanner::explainStop(const TaskRefusals& refusals) {
+  const int share = static_cast<int>(100 * (refusals.furthest - std::floor(refusals.furthest)));
+  const std::string where = "The stage \"" + refusals.stage + "\" stops after " + std::to_string(share) + " % of its way: ";
+  if (refusals.by_contact) {
+    return m_run.fail(PlanStatus::kApproachBlocked,
+                      where + refusals.why + ". Clear it out of the way, or ask for a shorter way.", refusals.waypoint, refusals.pose);
+  }
+  const Reach reach = reachOf(m_run.workcell(), m_q);
+  const Eigen::Vector3d p = refusals.pose ? refusals.pose->translation() : m_job.place;
+  return m_run.fail(refusals.stage == "approach" ? PlanStatus::kApproachBlocked : PlanStatus::kUnreachable,
+                    where + "the arm cannot follow it further. " + reachAdvice(reach, "The next point", p) +
+                        ", or ask for a shorter way.",
+                    refusals.waypoint, refusals.pose);
+}
+
+}  // namespace longarm::planning

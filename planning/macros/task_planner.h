@@ -1,0 +1,59 @@
+#pragma once
+
+/// @file
+/// Tasks into timed motions: everything known to be possible before the first stage is planned in detail.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "planning/macros/planning_run.h"
+#include "planning/macros/reach_advice.h"
+#include "planning/macros/task_search.h"
+#include "planning/macros/tool_task.h"
+
+namespace longarm::planning {
+
+/// What a macro asks for.
+struct ToolJob {
+  std::string subject;                   ///< "the point", for sentences.
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< Where it is, for advice on reach [m].
+  std::vector<TaskPart> parts;           ///< In order; joined by free motions.
+  std::vector<WorldObject> obstacles;    ///< Of the feature itself.
+  std::vector<std::string> touchable;    ///< Objects that touching stages may touch with the gripper's links.
+  bool open_gripper = false;             ///< Planned with the gripper open.
+  double touch_padding = 0.002;          ///< Around everything else in touching stages [m].
+};
+
+/// The full configuration with the gripper open, and a note in the plan where it was not; unchanged without a gripper.
+Eigen::VectorXd withGripperOpen(PlanningRun& run);
+
+/// One run of a job.  Fills the run's plan: stages, trajectory, clearance, goal, status.
+class TaskPlanner {
+ public:
+  TaskPlanner(PlanningRun& run, const ToolJob& job) : m_run(run), m_job(job) {}
+  /// @pre run.begin() was true.
+  Plan plan();
+  /// Where the arm's other joints stand in the plan (gripper).
+  const Eigen::VectorXd& configuration() const { return m_q; }
+
+ private:
+  bool search(TaskSearch& search, const ArmSpace& free);
+  bool searchPart(TaskSearch& search, const ArmSpace& free, std::size_t part, const Eigen::VectorXd& from);
+  bool possible(TaskSearch& search, const TaskPart& part);
+  bool move(const ArmSpace& free, TaskSearch& search, const TaskPart& part, std::vector<FollowedTask> found,
+            const Eigen::VectorXd& from);
+  bool time(const ArmSpace& free, TaskSearch& search, const TaskPart& part, const FollowedTask& task,
+            const std::vector<Eigen::VectorXd>& way);
+  Plan explain(const TaskRefusals& refusals, const TaskPart& part);
+  Plan explainStop(const TaskRefusals& refusals);
+  bool interrupted() const { return m_run.cancelled() || m_run.timeUp(); }
+
+  PlanningRun& m_run;
+  const ToolJob& m_job;
+  Eigen::VectorXd m_q;
+  std::size_t m_failed_part = 0;
+  bool m_any_goal = false;               // of the part that failed
+};
+
+}  // namespace longarm::planning

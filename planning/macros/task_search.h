@@ -1,0 +1,74 @@
+#pragma once
+
+/// @file
+/// Which ways of doing one part of a task the arm can follow from beginning to end.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/macros/planning_run.h"
+#include "planning/macros/tool_task.h"
+#include "planning/motion/ladder.h"
+#include "planning/motion/straight_leg.h"
+#include "planning/robot/ik.h"
+
+namespace longarm::planning {
+
+/// A way that the arm can follow: every waypoint of every stage, checked for collisions.
+struct FollowedTask {
+  const ToolTask* task = nullptr;
+  Eigen::VectorXd entry;                 ///< Arm joints where the stages begin.
+  std::vector<StraightLeg> legs;         ///< One per stage.
+  const Eigen::VectorXd& exit() const { return legs.empty() ? entry : legs.back().waypoints.back(); }
+};
+
+/// Why ways were refused, counted over all that were looked at; the details are of the one that came furthest.
+struct TaskRefusals {
+  int unreachable = 0;                   ///< No joints reach the entry.
+  int colliding = 0;                     ///< They do, but touch something there.
+  int stopped = 0;                       ///< A stage cannot be followed to its end.
+  bool by_contact = false;               ///< ... because something is in the way.
+  double furthest = -1;                  ///< Stage number plus the share of it that was reached.
+  std::string stage, why;                ///< Of the furthest; `why` is a clause.
+  int waypoint = -1;                     ///< Rung at which it stopped.
+  std::optional<Pose> pose;              ///< The pose that was refused.
+  Contact contact;                       ///< One of the collisions at an entry.
+};
+
+/// Borrows everything; lives within one Macro::plan().
+class TaskSearch {
+ public:
+  /// @param free      Space in which everything is an obstacle.
+  /// @param touching  In which the gripper's links may touch what the task touches.
+  TaskSearch(PlanningRun& run, const ArmSpace& free, const ArmSpace& touching);
+
+  /// Ways to do tasks [first, last) of the part, at most `enough`, those nearest to `from` first.  All entries and
+  /// coarse stations come before any fine waypoint.  Empty: see refusals(), or the run was interrupted.
+  std::vector<FollowedTask> find(const TaskPart& part, std::size_t first, std::size_t last, const Eigen::VectorXd& from,
+                                 std::size_t enough);
+  const TaskRefusals& refusals() const { return m_refusals; }
+  const ArmSpace& spaceOf(const ToolStage& stage) const { return stage.touching ? m_touching : m_free; }
+
+ private:
+  struct Rungs;
+  struct Rough;
+  std::vector<Rough> entries(const TaskPart& part, const ToolTask& task, const Rungs& rungs, const Eigen::VectorXd& from);
+  void addPostures(const Pose& X_RT, double roll, const Rungs& rungs, const Eigen::VectorXd& from, std::vector<Rough>& out);
+  std::vector<Rough> roughWays(const TaskPart& part, const ToolTask& task, const Rungs& rungs, const Eigen::VectorXd& from,
+                               std::size_t enough);
+  std::optional<StraightLeg> followStage(const ToolTask& task, std::size_t k, const Rungs& rungs,
+                                         const std::vector<double>& rolls, const Eigen::VectorXd& arm);
+  std::optional<FollowedTask> refine(const ToolTask& task, const Rungs& rungs, const Rough& rough);
+  void noteStop(const ToolTask& task, const Rungs& rungs, std::size_t reached, bool by_contact, const std::string& why);
+  bool stop() const { return m_run.cancelled() || m_run.timeUp(); }
+
+  PlanningRun& m_run;
+  const ArmSpace& m_free;
+  const ArmSpace& m_touching;
+  IkSolver m_solver;
+  TaskRefusals m_refusals;
+  std::optional<Contact> m_rung_contact;         // why the last rung that was refused was
+};
+
+}  // namespace longarm::planning

@@ -1,0 +1,74 @@
+#include "planning/macros/tool_shape.h"
+
+#include <algorithm>
+
+#include "planning/collision/bounds.h"
+
+namespace longarm::planning {
+namespace {
+
+// Furthest way of a bounded shape along a direction, both in one frame.
+double supportOf(const ShapeBounds& bounds, const Pose& X, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d local = X.linear().transpose() * direction;
+  const double box = local.dot(bounds.center) + local.cwiseAbs().dot(bounds.half);
+  const double capsule = std::max(local.dot(bounds.a), local.dot(bounds.b)) + bounds.radius;
+  return direction.dot(X.translation()) + std::min(box, capsule);
+}
+
+int tipOf(const Workcell& workcell) { return workcell.model->linkIndex(workcell.arm.tip_link).valueOr(workcell.model->rootLink()); }
+
+}  // namespace
+
+bool beyondArm(const Workcell& workcell, int link) {
+  const RobotModel& model = *workcell.model;
+  while (link >= 0) {
+    const int joint = model.links()[static_cast<std::size_t>(link)].parent_joint;
+    if (joint < 0) return false;
+    if (joint == workcell.arm.joints.back()) return true;
+    link = model.joints()[static_cast<std::size_t>(joint)].parent_link;
+  }
+  return false;
+}
+
+double toolOverhang(const Workcell& workcell, const Eigen::VectorXd& q) {
+  if (!workcell.gripper) return 0;
+  const RobotModel& model = *workcell.model;
+  const Pose X_TR = model.forward(q, tipOf(workcell)).inverse();
+  double most = 0;
+  for (const auto& name : workcell.gripper->links) {
+    const auto link = model.linkIndex(name);
+    if (!link) continue;
+    const Pose X_TL = X_TR * model.forward(q, *link);
+    for (const auto& shape : model.links()[static_cast<std::size_t>(*link)].collisions) {
+      most = std::max(most, supportOf(boundsOf(shape.shape), X_TL * shape.X_LS, Eigen::Vector3d::UnitZ()));
+    }
+  }
+  return most;
+}
+
+double heldBelow(const PlanContext& context, const Eigen::Vector3d& down) {
+  const RobotModel& model = *context.workcell->model;
+  const Eigen::Vector3d tool = model.forward(context.start, tipOf(*context.workcell)).translation();
+  double most = 0;
+  for (const auto& object : context.objects) {
+    const auto link = object.attached_link.empty() ? Result<int>(ErrorCode::kNotFound, "") : model.linkIndex(object.attached_link);
+    if (!link || !beyondArm(*context.workcell, *link)) continue;
+    const Pose X = model.forward(context.start, *link) * object.X_WO;
+    most = std::max(most, supportOf(boundsOf(object.shape), X, down) - down.dot(tool));
+  }
+  return most;
+}
+
+std::vector<std::string> objectsNear(const PlanContext& context, const Eigen::Vector3d& p, double distance) {
+  const PlacedBounds here = place(boundsOf(Sphere{1e-4}), Pose(Eigen::Translation3d(p)));
+  std::vector<std::string> names;
+  for (const auto* list : {&context.workcell->objects, &context.objects}) {
+    for (const auto& object : *list) {
+      if (!object.collides || !object.attached_link.empty()) continue;
+      if (distanceBound(here, place(boundsOf(object.shape), object.X_WO)) < distance) names.push_back(object.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace longarm::planning
