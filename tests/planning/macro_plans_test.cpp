@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "planning/macros/raster.h"
+#include "planning/collision/collision_world.h"
 #include "planning/macros/tool_shape.h"
 #include "tests/planning/macro_scene.h"
 
