@@ -54,6 +54,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kReady, "Robot", "R&eady", "macro-run", "", "Plan a motion to the ready pose"},
       {I::kLookAhead, "Robot", "&Look ahead", "macro-run", "", "Plan a motion that clears the view ahead"},
       {I::kReplan, "Robot", "&Plan again", "link-restart", "Ctrl+R", "Plan the same motion from where the robot is now"},
+      {I::kOtherWay, "Robot", "&Other way", "plan-other", "O", "Plan the same another way: other joints, another side; after the last the first comes again"},
       {I::kDiscardPlan, "Robot", "&Discard plan", "plan-cancel", "Ctrl+Backspace", "Take the plan off the table; moves nothing"},
       {I::kCancelPlanning, "Robot", "&Cancel planning", "plan-cancel", "Ctrl+.", "Give up planning"},
       {I::kPlayPause, "Robot", "Play or pause", "transport-play", "P", "Move the arm along the plan, or slow down and hold"},

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include <QEvent>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QStyle>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -17,6 +19,7 @@ namespace longarm::ui {
 namespace {
 
 constexpr int kColumns = 3;
+constexpr int kReplanAfter_ms = 300;       // Steps of a value that follow one another plan once.
 
 // Macros that have an action of their own, with menu and keys.
 const std::map<QString, ActionId>& actionsOfMacros() {
@@ -34,6 +37,13 @@ QString iconOf(const session::MacroRow& row) {
   return QStringLiteral("macro-run");
 }
 
+// "· ask": how well the feature is known decides more than a tooltip shows.
+QString mark(const session::MacroRow& row) {
+  if (row.go == QLatin1String("ask")) return MacroPanel::tr(" \u00b7 ask");
+  if (row.go == QLatin1String("no_go")) return MacroPanel::tr(" \u00b7 no go");
+  return {};
+}
+
 }  // namespace
 
 MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearance, QWidget* parent)
@@ -49,13 +59,22 @@ MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearanc
   m_grid->setSpacing(5);
   for (int i = 0; i < kColumns; ++i) m_grid->setColumnStretch(i, 1);
   column->addLayout(m_grid);
-  m_outcome = new QLabel(this);
+  m_outcome = new QLabel;
   m_outcome->setTextFormat(Qt::PlainText);
   m_outcome->setWordWrap(true);
   m_outcome->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  column->addWidget(m_outcome, 1);
+  auto* area = new QScrollArea(this);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setWidget(m_outcome);
+  m_form = new MacroForm(bench.plans(), this);
+  auto* middle = new QHBoxLayout;
+  middle->setSpacing(8);
+  middle->addWidget(area, 1);
+  middle->addWidget(m_form, 1);
+  column->addLayout(middle, 1);
   auto* row = new QHBoxLayout;
-  for (const auto id : {ActionId::kReplan, ActionId::kDiscardPlan}) {
+  for (const auto id : {ActionId::kReplan, ActionId::kOtherWay, ActionId::kDiscardPlan}) {
     auto* button = new QToolButton(this);
     button->setDefaultAction(actions.at(id));
     button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
@@ -65,6 +84,8 @@ MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearanc
   }
   row->addStretch(1);
   column->addLayout(row);
+  m_replan.setSingleShot(true);
+  m_replan.setInterval(kReplanAfter_ms);
   bindActions();
   refresh();
 }
@@ -83,6 +104,9 @@ void MacroPanel::bindActions() {
     connect(m_actions.at(id), &QAction::triggered, this, [this, name = macro] { m_bench.plan(name); });
   }
   connect(m_actions.at(ActionId::kReplan), &QAction::triggered, &m_bench, &Workbench::replan);
+  connect(m_actions.at(ActionId::kOtherWay), &QAction::triggered, &m_bench, &Workbench::planOtherWay);
+  connect(&m_replan, &QTimer::timeout, &m_bench, &Workbench::replan);
+  connect(m_form, &MacroForm::edited, this, &MacroPanel::replanIfShown);
   connect(m_actions.at(ActionId::kDiscardPlan), &QAction::triggered, &plans, &session::PlanController::discard);
   connect(m_actions.at(ActionId::kCancelPlanning), &QAction::triggered, &plans, &session::PlanController::cancel);
 }
@@ -92,23 +116,85 @@ QPushButton* MacroPanel::button(const QString& macro) const {
   return found == m_buttons.end() ? nullptr : found->second;
 }
 
+QString MacroPanel::outcome() const { return m_outcome->text(); }
+
 void MacroPanel::rebuild(const std::vector<session::MacroRow>& rows) {
   for (const auto& [name, each] : m_buttons) each->deleteLater();
   m_buttons.clear();
-  int place = 0;
-  auto ordered = rows;
-  std::stable_partition(ordered.begin(), ordered.end(), [](const session::MacroRow& row) { return row.takes.has_value(); });
-  for (const auto& row : ordered) {
+  m_laid_out.clear();
+  for (const auto& row : rows) {
     auto* button = new QPushButton(row.title, this);
     button->setProperty("action_icon", iconOf(row));
+    button->setProperty("macro", row.name);
     button->setIconSize({20, 20});
     button->setFocusPolicy(Qt::TabFocus);
-    connect(button, &QPushButton::clicked, this, [this, name = row.name] { m_bench.plan(name); });
-    m_grid->addWidget(button, place / kColumns, place % kColumns);
+    button->installEventFilter(this);
+    button->hide();
+    connect(button, &QPushButton::clicked, this, [this, name = row.name] {
+      choose(name);
+      m_bench.plan(name);
+    });
     m_buttons[row.name] = button;
-    ++place;
   }
   applyTheme();
+}
+
+// Tabbing to a motion shows its settings before anything is planned.
+bool MacroPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::FocusIn) choose(watched->property("macro").toString());
+  return QWidget::eventFilter(watched, event);
+}
+
+bool MacroPanel::offered(const session::MacroRow& row) const {
+  const auto* item = m_bench.document().item(m_bench.document().selection().primary);
+  return item != nullptr ? row.takes == item->kind : !row.takes.has_value();
+}
+
+void MacroPanel::layOut(const std::vector<session::MacroRow>& rows) {
+  QStringList wanted;
+  for (const auto& row : rows) {
+    if (offered(row)) wanted << row.name;
+  }
+  if (wanted == m_laid_out) return;
+  for (const auto& [name, each] : m_buttons) {
+    m_grid->removeWidget(each);
+    each->setVisible(wanted.contains(name));
+  }
+  for (int place = 0; place < wanted.size(); ++place) {
+    m_grid->addWidget(button(wanted[place]), place / kColumns, place % kColumns);
+    if (place > 0) setTabOrder(button(wanted[place - 1]), button(wanted[place]));
+  }
+  m_laid_out = wanted;
+  if (!wanted.contains(m_chosen)) choose({});
+}
+
+void MacroPanel::choose(const QString& macro) {
+  m_chosen = macro;
+  std::optional<session::MacroRow> chosen;
+  for (auto& row : m_bench.plans().macros()) {
+    if (row.name == macro) chosen = row;
+  }
+  m_form->setMacro(chosen);
+}
+
+void MacroPanel::replanIfShown(const QString& macro) {
+  const auto& record = m_bench.document().plan();
+  const auto& play = m_bench.play().state();
+  if (record && record->macro == macro.toStdString() && !play.loaded && !play.playing && m_bench.whyNotPlan().isEmpty()) m_replan.start();
+}
+
+void MacroPanel::showButton(const session::MacroRow& row) {
+  const QString busy = m_bench.whyNotPlan();
+  const QString why = busy.isEmpty() ? row.reason : busy;
+  QPushButton* shown = button(row.name);
+  shown->setEnabled(why.isEmpty());
+  shown->setText(row.title + mark(row));
+  QStringList tip{row.description};
+  if (!row.accuracy.isEmpty()) tip << row.accuracy;
+  tip << (why.isEmpty() ? tr("Plans and shows; nothing moves before Play.") : tr("Not now: %1").arg(why));
+  shown->setToolTip(tip.join(QLatin1Char('\n')).toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
+  const auto action = actionsOfMacros().find(row.name);
+  if (action != actionsOfMacros().end()) m_actions.setWhyNot(action->second, why);
 }
 
 void MacroPanel::refresh() {
@@ -116,23 +202,15 @@ void MacroPanel::refresh() {
   bool same = rows.size() == m_buttons.size();
   for (const auto& row : rows) same = same && button(row.name) != nullptr;
   if (!same) rebuild(rows);
-  const QString busy = m_bench.whyNotPlan();
   for (const auto& [macro, id] : actionsOfMacros()) {
     if (button(macro) == nullptr) m_actions.setWhyNot(id, tr("This workcell has no such motion."));
   }
-  for (const auto& row : rows) {
-    const QString why = busy.isEmpty() ? row.reason : busy;
-    QPushButton* shown = button(row.name);
-    shown->setEnabled(why.isEmpty());
-    const QString tip = row.description + QLatin1Char('\n') + (why.isEmpty() ? tr("Plans and shows; nothing moves before Play.") : tr("Not now: %1").arg(why));
-    shown->setToolTip(tip.toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
-    const auto action = actionsOfMacros().find(row.name);
-    if (action != actionsOfMacros().end()) m_actions.setWhyNot(action->second, why);
-  }
+  for (const auto& row : rows) showButton(row);
+  layOut(rows);
   const auto* item = m_bench.document().item(m_bench.document().selection().primary);
   m_target->setText(item != nullptr ? tr("With the selected %1 \u201c%2\u201d:")
                                           .arg(QString::fromLatin1(vision::toString(item->kind)), QString::fromStdString(item->name))
-                                    : tr("Nothing is selected: canned motions."));
+                                    : tr("Nothing is selected: canned motions. Select a feature to see what can be done with it."));
   refreshPlan();
 }
 
@@ -143,22 +221,34 @@ void MacroPanel::refreshPlan() {
   const QString none = record ? QString() : tr("There is no plan.");
   m_actions.setWhyNot(ActionId::kDiscardPlan, m_bench.play().state().playing ? tr("The arm is moving along it.") : none);
   m_actions.setWhyNot(ActionId::kReplan, none.isEmpty() ? m_bench.whyNotPlan() : none);
+  const QString one = m_bench.plans().whyNotOtherWay();
+  m_actions.setWhyNot(ActionId::kOtherWay, one.isEmpty() ? m_bench.whyNotPlan() : one);
   if (!record || planning) {
     m_outcome->setText(planning ? tr("Planning %1 ...").arg(m_bench.plans().planning()) : tr("A motion is shown first, and moves only by Play."));
     return;
   }
-  const auto& plan = record->plan;
+  m_outcome->setText(told(record->plan).join(QLatin1Char('\n')));
+  m_outcome->setToolTip(m_outcome->text().toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
+}
+
+QStringList MacroPanel::told(const planning::Plan& plan) const {
   QStringList lines;
   if (!plan.ok()) {
-    lines << tr("Refused: %1").arg(QString::fromStdString(plan.reason));
-  } else {
-    lines << tr("%1 s, clearance %2 mm, planned in %3 s.").arg(QString::number(plan.trajectory.duration(), 'f', 1),
-        QString::number(plan.min_clearance * 1000, 'f', 0), QString::number(plan.planning_seconds, 'f', 2));
-    if (plan.go != "go") lines << QString::fromStdString(plan.accuracy_note);
-    for (const auto& note : plan.notes) lines << QString::fromStdString(note);
+    const QString code = QString::fromLatin1(planning::toString(plan.status)).replace(QLatin1Char('_'), QLatin1Char(' '));
+    const QString stage = plan.failed_stage.empty() ? QString() : tr(" in stage \u201c%1\u201d").arg(QString::fromStdString(plan.failed_stage));
+    lines << tr("Refused, %1%2: %3").arg(code, stage, QString::fromStdString(plan.reason));
+    if (!plan.advice.empty()) lines << tr("What would help:");
+    for (const auto& advice : plan.advice) lines << QStringLiteral("\u2022 ") + QString::fromStdString(advice);
+    return lines;
   }
-  m_outcome->setText(lines.join(QLatin1Char('\n')));
-  m_outcome->setToolTip(m_outcome->text().toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
+  lines << tr("%1 s, clearance %2 mm, planned in %3 s.").arg(QString::number(plan.trajectory.duration(), 'f', 1),
+      QString::number(plan.min_clearance * 1000, 'f', 0), QString::number(plan.planning_seconds, 'f', 2));
+  QStringList stages;
+  for (const auto& stage : plan.stages) stages << tr("%1 %2 s").arg(QString::fromStdString(stage.name), QString::number(stage.end_s - stage.start_s, 'f', 1));
+  lines << stages.join(QStringLiteral(" \u2192 "));
+  if (plan.go != "go") lines << QString::fromStdString(plan.accuracy_note);
+  for (const auto& note : plan.notes) lines << QString::fromStdString(note);
+  return lines;
 }
 
 void MacroPanel::applyTheme() {

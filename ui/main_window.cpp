@@ -11,6 +11,7 @@
 #include <QSplitter>
 #include <QVBoxLayout>
 
+#include "ui/macro_memory.h"
 #include "ui/shortcut_sheet.h"
 
 namespace longarm::ui {
@@ -21,6 +22,7 @@ MainWindow::MainWindow(Workbench& bench, Appearance& appearance, QSettings& sett
     : QMainWindow(parent), m_bench(bench), m_appearance(appearance), m_settings(settings), m_actions(new Actions(appearance, this)),
       m_stop_keys(new StopKeys([&bench] { return bench.robot().armed() || bench.robot().status().moving; }, this)),
       m_files(new FileActions(bench, *m_actions, settings, this)) {
+  new MacroMemory(bench.plans(), settings, this);
   setObjectName(QStringLiteral("longarm"));
   new SketchActions(bench.targeting(), *m_actions, this);
   makePanels();
@@ -187,9 +189,19 @@ void MainWindow::showTitle() {
 void MainWindow::showPlanNotice() {
   const QString key = QStringLiteral("plan");
   const auto& state = m_bench.play().state();
+  showAccuracyNotice();
   if (!state.stale || !state.has_plan) return m_notices->clear(key);
   if (m_notices->has(key)) return;
   m_notices->post(key, state.why_not_play, {{tr("Plan again"), [this] { m_bench.replan(); }},
+                                            {tr("Discard plan"), [this] { m_bench.plans().discard(); }}});
+}
+
+void MainWindow::showAccuracyNotice() {
+  const QString key = QStringLiteral("accuracy");
+  const auto& state = m_bench.play().state();
+  if (!state.ask) return m_notices->clear(key);
+  if (m_notices->has(key)) return;
+  m_notices->post(key, state.why_not_play, {{tr("Go on with care"), [this] { m_bench.play().acceptAccuracy(); }},
                                             {tr("Discard plan"), [this] { m_bench.plans().discard(); }}});
 }
 

@@ -73,6 +73,7 @@ class MainWindow final : public QMainWindow {
   void showMode();
   void showTitle();
   void showPlanNotice();
+  void showAccuracyNotice();
   void showLinkNotice();
   void showAbout();
 

@@ -144,6 +144,12 @@ void Workbench::replan() {
   if (!started) say(QString::fromStdString(started.error().message));
 }
 
+void Workbench::planOtherWay() {
+  if (const QString why = whyNotPlan(); !why.isEmpty()) return say(why);
+  const Status started = m_plans.planOtherWay();
+  if (!started) say(QString::fromStdString(started.error().message));
+}
+
 void Workbench::say(const QString& sentence) {
   if (!sentence.isEmpty()) Q_EMIT said(sentence);
 }

@@ -64,6 +64,7 @@ class Workbench final : public QObject {
   QString whyNotPlan() const;
   void plan(const QString& macro);
   void replan();
+  void planOtherWay();
   /// A sentence for the operator.
   void say(const QString& sentence);
 

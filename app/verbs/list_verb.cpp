@@ -43,6 +43,7 @@ Result<Answer> runListMacros(const ListOptions& options) {
     rows.push_back({info.name, takes, info.description});
     for (const auto& p : info.parameters) {
       parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.value}, {"min", p.lower}, {"max", p.upper}, {"description", p.description}});
+      if (!p.choices.empty()) parameters.back()["choices"] = p.choices;
       rows.push_back({"", "  " + p.name + " = " + formatNumber(p.value) + (p.unit == "1" || p.unit == "choice" ? "" : " " + p.unit), p.description});
     }
     nlohmann::json entry{{"name", info.name}, {"title", info.title}, {"takes", takes}, {"description", info.description}, {"parameters", parameters}};

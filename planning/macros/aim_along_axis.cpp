@@ -13,7 +13,7 @@ class AimAlongAxis final : public FeatureMacro {
     return {"aim_along_axis", "Aim Along Axis", "Points the tool along the marked line from before one of its ends.",
             vision::FeatureKind::kLine,
             {{"stand_off", "m", 0.20, 0.01, 2, "Between the tool point and the end of the line."},
-             {"end", "choice", 0, 0, 2, "0: whichever end can be reached, 1: the first, 2: the second."}},
+             {"end", "choice", 0, 0, 2, "0: whichever end can be reached, 1: the first, 2: the second.", {"either", "first", "second"}}},
             0.01};
   }
 

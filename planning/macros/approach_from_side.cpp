@@ -4,6 +4,7 @@
 #include "planning/macros/feature_macro.h"
 #include "planning/macros/feature_macros.h"
 #include "planning/macros/tool_directions.h"
+#include "planning/macros/tool_shape.h"
 
 namespace longarm::planning {
 namespace {
@@ -33,6 +34,7 @@ class ApproachFromSide final : public FeatureMacro {
     body.shape = Cylinder{setup.arguments["radius"] + kAllowance, line->length + 2 * kAllowance};
     body.X_WO = poseAt(line->middle(), rotationWithZ(line->direction));
     setup.job.obstacles.push_back(body);
+    setup.job.touchable = objectsThrough(setup.run.context(), line->middle());
     setup.job.touchable.push_back(body.name);
     setup.job.open_gripper = true;
     TaskPart part;

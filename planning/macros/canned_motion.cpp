@@ -33,8 +33,10 @@ class CannedRun {
   Plan run() {
     if (!m_run.begin()) return m_run.plan();
     if (!readGoal()) return m_run.plan();
-    const auto world = m_run.makeWorld({}, m_run.context().start);
-    const ArmSpace space(m_run.workcell(), *world, m_run.context().start);
+    if ((m_goal - m_run.start()).norm() < 1e-6) m_run.keepContact();
+    else if (!m_run.leaveContact()) return m_run.plan();
+    const auto world = m_run.makeWorld({}, m_run.configuration());
+    const ArmSpace space(m_run.workcell(), *world, m_run.configuration());
     m_run.plan().goal = space.tip(m_goal);
     if ((m_goal - m_run.start()).norm() < 1e-6) return standHere(space);
     Contact contact;
@@ -98,9 +100,10 @@ class CannedRun {
     const auto trajectory = timedPath(m_run.workcell(), space, path.waypoints, {m_run.workcell().max_tool_speed});
     if (!trajectory) return m_run.fail(PlanStatus::kNoPath, trajectory.error().message);
     if (m_run.cancelled()) return m_run.fail(PlanStatus::kCancelled, interruption(PlanStatus::kCancelled, 0));
+    const double start = m_run.plan().trajectory.duration();
     appendStage(m_run.plan(), "transit", false, *trajectory);
     measureRatios(m_run.workcell(), m_run.plan());
-    m_run.plan().min_clearance = leastClearance(space, m_run.plan().trajectory, 0, trajectory->duration());
+    m_run.plan().min_clearance = leastClearance(space, m_run.plan().trajectory, start, m_run.plan().trajectory.duration());
     return m_run.finish();
   }
 

@@ -6,11 +6,11 @@
 #include <Eigen/Dense>
 
 #include "core/text.h"
+#include "planning/macros/accuracy.h"
 
 namespace longarm::planning {
 namespace {
 
-constexpr double kConfidence = 1.96;     // 95 % of a normal distribution, two-sided
 constexpr double kShortest = 0.01;       // [m]
 constexpr double kLongest = 20;
 
@@ -30,14 +30,7 @@ Result<Pose> poseOfParent(const std::string& parent, const RobotModel& model, co
                                              model.name() + "; give it in \"" + root + "\""};
 }
 
-double RootedFeature::uncertainty() const {
-  double worst = 0;
-  for (const auto& C : covariances) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(C, Eigen::EigenvaluesOnly);
-    worst = std::max(worst, solver.eigenvalues().maxCoeff());
-  }
-  return kConfidence * std::sqrt(worst);
-}
+double RootedFeature::uncertainty() const { return uncertaintyOf(covariances); }
 
 Result<RootedFeature> rooted(const vision::Feature& feature, vision::FeatureKind wanted, const RobotModel& model,
                              const Eigen::VectorXd& q) {

@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <exception>
 
-#include "core/text.h"
+#include "planning/macros/accuracy.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
 
 namespace longarm::planning {
 namespace {
-
-constexpr double kHopeless = 3;          // times the need
-
-std::string millimetres(double metres) { return formatFixed(metres * 1000, 1) + " mm"; }
 
 Eigen::Vector3d eyeOf(const Workcell& cell, const Eigen::VectorXd& q, const Eigen::Vector3d& shoulder) {
   for (const auto& camera : cell.cameras) {
@@ -28,15 +24,6 @@ Eigen::Vector3d meanOf(const std::vector<Eigen::Vector3d>& points) {
 }
 
 }  // namespace
-
-void judgeAccuracy(Plan& plan, double uncertainty, double need) {
-  plan.go = uncertainty <= need ? "go" : uncertainty <= kHopeless * need ? "ask" : "no_go";
-  if (uncertainty == 0) plan.accuracy_note = "The feature states no uncertainty.";
-  if (uncertainty <= need) return;
-  plan.accuracy_note = "The feature is known to " + millimetres(uncertainty) + " (95 %), this needs " + millimetres(need) +
-                       (plan.go == "ask" ? ": measure again from nearer or with a wider baseline, or go on with care."
-                                         : ": measure again from nearer or with a wider baseline.");
-}
 
 Plan FeatureMacro::plan(const PlanContext& context, const vision::Feature* feature) const {
   const MacroInfo about = info();
@@ -64,7 +51,9 @@ Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& featur
   setup.eye = eyeOf(run.workcell(), context.start, setup.reach.shoulder);
   setup.job.subject = "the " + std::string(vision::toString(*about.takes)) + " \"" + setup.feature.name + "\"";
   setup.job.place = meanOf(setup.feature.points);
-  judgeAccuracy(run.plan(), setup.feature.uncertainty(), about.accuracy_need);
+  const AccuracyVerdict verdict = judgeAccuracy(setup.feature.uncertainty(), about.accuracy_need);
+  run.plan().go = verdict.go;
+  run.plan().accuracy_note = verdict.note;
   if (const Status described = describe(setup); !described) {
     const bool limits = described.error().code == ErrorCode::kOutOfLimits;
     return run.fail(limits ? PlanStatus::kLimits : PlanStatus::kBadFeature, about.title + ": " + described.error().message + ".");
@@ -74,10 +63,13 @@ Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& featur
 
 Plan FeatureMacro::planJob(MacroSetup& setup) const {
   PlanningRun& run = setup.run;
+  const bool from_here = !setup.job.parts.empty() && setup.job.parts.front().from_here;
+  if (from_here || setup.arm_stays) run.keepContact();
+  else if (!run.leaveContact()) return run.plan();
   const std::vector<std::string> notes = run.plan().notes;
-  const auto world = run.makeWorld({}, run.context().start);
+  const auto world = run.makeWorld({}, run.configuration());
   run.plan().notes = notes;              // the planner looks at the start again, with the job's own obstacles
-  const ArmSpace space(run.workcell(), *world, run.context().start);
+  const ArmSpace space(run.workcell(), *world, run.configuration());
   if (setup.arm_stays) {
     appendStage(run.plan(), "aim", false, standStill(run.workcell().armJointNames(), run.start(), 0.1));
     run.plan().min_clearance = leastClearance(space, run.plan().trajectory, 0, 0.1);

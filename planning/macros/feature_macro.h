@@ -42,7 +42,4 @@ class FeatureMacro : public Macro {
   Plan planJob(MacroSetup& setup) const;
 };
 
-/// Sets the plan's go and accuracy_note: the feature's 95 % against the macro's need.
-void judgeAccuracy(Plan& plan, double uncertainty, double need);
-
 }  // namespace longarm::planning

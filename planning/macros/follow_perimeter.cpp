@@ -22,7 +22,7 @@ class FollowPerimeter final : public FeatureMacro {
              {"laps", "choice", 1, 1, 20, "How many times round."},
              {"stand_off", "m", 0.06, 0.005, 1, "Between the tool point and the surface."},
              travelSpeedParameter(0.05),
-             {"roll_free", "choice", 1, 0, 1, "1: the tool may turn about its own axis; 0: its x stays along the first edge."}},
+             {"roll_free", "choice", 1, 0, 1, "1: the tool may turn about its own axis; 0: its x stays along the first edge.", {"held", "free"}}},
             0.008};
   }
 

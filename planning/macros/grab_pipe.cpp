@@ -8,7 +8,9 @@
 #include "planning/macros/grasp_search.h"
 #include "planning/macros/macro_arguments.h"
 #include "planning/macros/reach_advice.h"
+#include "planning/macros/task_advice.h"
 #include "planning/macros/task_planner.h"
+#include "planning/macros/tool_shape.h"
 #include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
 
@@ -25,12 +27,12 @@ class GrabRun {
       : m_run(context, "grab_pipe"), m_feature(feature), m_options(options) {}
 
   Plan run() {
-    if (!m_run.begin() || !readPipe() || !checkGripper()) return m_run.plan();
+    if (!m_run.begin() || !readPipe() || !checkGripper() || !m_run.leaveContact()) return m_run.plan();
     m_q = withGripperOpen(m_run);
     const WorldObject obstacle = pipeObstacle();
     const auto transit_world = m_run.makeWorld({obstacle}, m_q);
     const auto approach_world = m_run.makeWorld({obstacle}, m_q);
-    approach_world->allow(obstacle.name, m_run.workcell().gripper->links);
+    for (const auto& name : targetNames(obstacle.name)) approach_world->allow(name, m_run.workcell().gripper->links);
     approach_world->setPadding(std::min(m_options.approach_padding, approach_world->padding()),
                                approach_world->selfPadding());
     forgetRepeatedNotes();
@@ -78,6 +80,13 @@ class GrabRun {
     return out;
   }
 
+  // The measured pipe, and the known bodies that it is.
+  std::vector<std::string> targetNames(const std::string& pipe) const {
+    std::vector<std::string> names = objectsThrough(m_run.context(), m_pipe.middle);
+    names.push_back(pipe);
+    return names;
+  }
+
   // Both worlds look at the same start and say the same.
   void forgetRepeatedNotes() {
     auto& notes = m_run.plan().notes;
@@ -100,6 +109,11 @@ class GrabRun {
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (interrupted()) return interruptedPlan();
         grasps.tryGrasp(wanted[i], found);
+        const auto kept = std::remove_if(found.begin(), found.end(), [this](const ReachableGrasp& grasp) {
+          return isAvoided(m_run.context(), grasp.leg.waypoints.front());
+        });
+        m_any_avoided = m_any_avoided || kept != found.end();
+        found.erase(kept, found.end());
         const bool last = i + 1 == wanted.size();
         const bool next_tilt = last || wanted[i + 1].tilt != wanted[i].tilt;
         const bool enough = static_cast<int>(found.size()) >= m_options.enough_goals;
@@ -110,7 +124,7 @@ class GrabRun {
         found.clear();
       }
     }
-    return explain(grasps.refusals());
+    return explain(grasps.refusals(), transit);
   }
 
   // Plans to any of the grasps; a goal whose timed motion cannot be certified is left out and the rest tried again.
@@ -155,9 +169,10 @@ class GrabRun {
     appendStage(plan, "approach", true, *last);
     measureRatios(cell, plan);
     const double end = plan.trajectory.duration(), start = end - last->duration();
-    plan.min_clearance = std::min(leastClearance(transit, plan.trajectory, 0, start),
+    plan.min_clearance = std::min(leastClearance(transit, plan.trajectory, start - way.duration(), start),
                                   leastClearance(approach, plan.trajectory, start, end));
     plan.goal = chosen.grasp.X_RT;
+    plan.entry = chosen.leg.waypoints.front();
     judgeAccuracy(chosen.grasp);
     return true;
   }
@@ -187,7 +202,20 @@ class GrabRun {
     return m_run.finish();
   }
 
-  Plan explain(const GraspRefusals& refusals) {
+  // The straight approaches to the middle of the pipe.
+  std::vector<std::vector<Pose>> approaches() const {
+    std::vector<std::vector<Pose>> ways;
+    for (const auto& grasp : graspsAt(m_pipe, 0)) {
+      ways.push_back({grasp.X_RT * Eigen::Translation3d(0, 0, -m_options.standoff), grasp.X_RT});
+    }
+    return ways;
+  }
+
+  Plan explain(const GraspRefusals& refusals, const ArmSpace& transit) {
+    if (m_any_avoided) return m_run.fail(PlanStatus::kNoPath, "There is no other way to hold the pipe than those shown.");
+    m_run.plan().failed_stage = m_any_goal ? "transit" : "approach";
+    if (!m_any_goal && refusals.colliding > 0) adviseObstacle(m_run, refusals.contact, pipeObstacle().name);
+    const bool advised = !m_any_goal && adviseDriving(m_run, transit, approaches());
     const Pose straight = graspsAt(m_pipe, 0).front().X_RT;
     const Pose pose = refusals.pose.value_or(straight);
     if (m_any_goal) {
@@ -199,7 +227,8 @@ class GrabRun {
     if (refusals.colliding == 0 && refusals.blocked == 0) {
       const Reach reach = reachOf(m_run.workcell(), m_q);
       return m_run.fail(PlanStatus::kUnreachable,
-                        "The pipe is out of reach: " + reachAdvice(reach, "its middle", m_pipe.middle) + ".", 2, straight);
+                        "The pipe is out of reach: " + (advised ? reachFacts(reach, "its middle", m_pipe.middle) + ", or the hand cannot be turned so there; drive nearer"
+                                                                : reachAdvice(reach, "its middle", m_pipe.middle)) + ".", 2, straight);
     }
     if (refusals.blocked == 0) {
       return m_run.fail(PlanStatus::kGoalInCollision,
@@ -217,6 +246,7 @@ class GrabRun {
   Pipe m_pipe;
   Eigen::VectorXd m_q;                   // the start with the gripper open
   bool m_any_goal = false;
+  bool m_any_avoided = false;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "planning/macros/feature_macro.h"
 #include "planning/macros/feature_macros.h"
+#include "planning/macros/tool_shape.h"
 
 namespace longarm::planning {
 namespace {
@@ -43,6 +44,7 @@ class GraspByFaces final : public FeatureMacro {
                                            formatFixed(1e3 * widest, 1) + " mm"};
     }
     setup.job.obstacles.push_back(box->object(setup.feature.name));
+    setup.job.touchable = objectsThrough(setup.run.context(), box->X_RO.translation());
     setup.job.touchable.push_back(setup.feature.name);
     setup.job.open_gripper = true;
     setup.job.place = box->X_RO.translation();

@@ -37,7 +37,7 @@ class LookAt final : public FeatureMacro {
     return {"look_at", "Look At", "Turns a camera to the marked point: the arm's own, or one on a pan-tilt.",
             vision::FeatureKind::kPoint,
             {{"stand_off", "m", 0.35, 0.1, 2, "Distance of the arm's camera from the point."},
-             {"pan_tilt", "choice", m_arm ? 0.0 : 1.0, 0, 1, "1: turn the first pan-tilt and leave the arm where it is; 0: move the arm's camera."}},
+             {"pan_tilt", "choice", m_arm ? 0.0 : 1.0, 0, 1, "1: turn the first pan-tilt and leave the arm where it is; 0: move the arm's camera.", {"arm", "pan-tilt"}}},
             0.05};
   }
 

@@ -20,6 +20,7 @@ struct MacroParameter {
   double value = 0;                               ///< Default.
   double lower = 0, upper = 0;                    ///< Allowed range, both included.
   std::string description;                        ///< One sentence.
+  std::vector<std::string> choices = {};          ///< Of a "choice": what the numbers from `lower` on mean; empty: a count.
 };
 
 struct MacroInfo {
@@ -37,7 +38,8 @@ class Macro {
  public:
   virtual ~Macro() = default;
   virtual MacroInfo info() const = 0;
-  /// Plans with context.arguments (a wrong one ends it as kLimits); never throws, answers within context.budget_s, honours context.cancel within 100 ms.
+  /// Plans with context.arguments (a wrong one ends it as kLimits); never throws, answers within context.budget_s,
+  /// honours context.cancel within 100 ms.
   /// @pre feature is given exactly when info().takes is.
   virtual Plan plan(const PlanContext& context, const vision::Feature* feature) const = 0;
 };

@@ -17,7 +17,7 @@ class MoveAroundAxis final : public FeatureMacro {
             "Turns what is gripped about the marked line, right-handed from its first to its second end: door, lid, valve, lever.",
             vision::FeatureKind::kLine,
             {{"angle", "rad", 0.7854, -6.2832, 6.2832, "How far to turn; negative is left-handed."},
-             {"turn_tool", "choice", 1, 0, 1, "1: the grip turns with it; 0: the tool keeps its direction and the handle turns in it."},
+             {"turn_tool", "choice", 1, 0, 1, "1: the grip turns with it; 0: the tool keeps its direction and the handle turns in it.", {"no", "yes"}},
              travelSpeedParameter(0.10)},
             0.006};
   }

@@ -21,6 +21,8 @@ nlohmann::json toJson(const Plan& plan, const std::string& root) {
   nlohmann::json out{{"status", toString(plan.status)},
                      {"reason", plan.reason},
                      {"macro", plan.macro},
+                     {"advice", plan.advice},
+                     {"failed_stage", nullptr},
                      {"failed_waypoint", nullptr},
                      {"failed_pose", nullptr},
                      {"planning_seconds", plan.planning_seconds},
@@ -35,6 +37,7 @@ nlohmann::json toJson(const Plan& plan, const std::string& root) {
                      {"figures", plan.figures},
                      {"pan_tilt", plan.pan_tilt},
                      {"stages", std::move(stages)}};
+  if (!plan.failed_stage.empty()) out["failed_stage"] = plan.failed_stage;
   if (plan.failed_waypoint >= 0) out["failed_waypoint"] = plan.failed_waypoint;
   if (plan.failed_pose) out["failed_pose"] = poseJson(*plan.failed_pose, root);
   if (plan.ok()) {

@@ -5,12 +5,22 @@
 
 #include "core/text.h"
 #include "planning/motion/path_planner.h"
+#include "planning/motion/straight_leg.h"
+#include "planning/motion/timed_motion.h"
 
 namespace longarm::planning {
 namespace {
 
 constexpr double kLimitSlack = 2e-3;     // encoders may read a hair outside a limit [rad or m]
+constexpr double kSameWay = 0.2;         // [rad]
 constexpr double kStartShare = 0.8;
+constexpr double kBackOff[] = {0.03, 0.06};      // [m]
+
+std::string quoted(const std::vector<std::string>& names) {
+  std::string out;
+  for (const auto& name : names) out += (out.empty() ? "\"" : ", \"") + name + "\"";
+  return out;
+}
 
 }  // namespace
 
@@ -85,26 +95,80 @@ bool PlanningRun::begin() {
   if (!checkContext()) return false;
   m_start = groupPositions(model(), workcell().arm, m_context.start);
   if (!checkLimits()) return false;
+  m_configuration = m_context.start;
   m_allowed = allowedPairs(workcell().model);
-  std::vector<WorldObject> objects = workcell().objects;
-  objects.insert(objects.end(), m_context.objects.begin(), m_context.objects.end());
-  const CollisionWorld world(workcell().model, objects, m_allowed);
+  m_objects = workcell().objects;
+  m_objects.insert(m_objects.end(), m_context.objects.begin(), m_context.objects.end());
+  m_grip = gripAt(workcell(), m_objects, m_configuration);
   Contact contact;
-  if (world.touching(m_context.start, &contact)) {
+  if (bareWorld({}, m_configuration, {}, true)->touching(m_configuration, &contact)) {
     fail(PlanStatus::kStartInCollision,
          "The robot already stands in collision: " + contact.sentence() + ". Jog it clear, or correct the scene.", 0);
     return false;
   }
+  if (!m_grip.held.empty()) m_plan.notes.push_back("The gripper holds " + quoted(m_grip.held) + ": planned to move with the tool.");
   return true;
 }
 
-std::unique_ptr<CollisionWorld> PlanningRun::makeWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q) {
-  std::vector<WorldObject> objects = workcell().objects;
-  objects.insert(objects.end(), m_context.objects.begin(), m_context.objects.end());
-  objects.insert(objects.end(), extra.begin(), extra.end());
+void PlanningRun::keepContact() {
+  m_keeps_contact = true;
+  if (m_grip.touched.empty()) return;
+  m_plan.notes.push_back("The gripper touches " + quoted(m_grip.touched) + " and may go on touching it on the way.");
+}
+
+bool PlanningRun::leaveContact() {
+  if (m_grip.touched.empty()) return true;
+  const Eigen::Vector3d back = -model().forward(m_configuration, model().linkIndex(workcell().arm.tip_link).valueOr(0)).linear().col(2);
+  for (const double way : kBackOff) {
+    for (const Eigen::Vector3d& direction : {back, Eigen::Vector3d(Eigen::Vector3d::UnitZ())}) {
+      if (backOff(way * direction)) return true;
+    }
+  }
+  fail(PlanStatus::kStartInCollision,
+       "The gripper touches " + quoted(m_grip.touched) + " and cannot back straight off it: jog it clear first.", 0);
+  return false;
+}
+
+bool PlanningRun::backOff(const Eigen::Vector3d& way) {
   CollisionOptions options;
   options.moving = movingIndices(model(), workcell().arm);
+  const auto touching = bareWorld({}, m_configuration, options, true);
+  const auto [outside, inside] = touching->clearances(m_configuration, 2 * options.padding);
+  touching->setPadding(std::min(options.padding, kStartShare * outside), std::min(options.self_padding, kStartShare * inside));
+  const ArmSpace space(workcell(), *touching, m_configuration);
+  Pose X_end = space.tip(m_start);
+  X_end.translation() += way;
+  const StraightLeg leg = followLine(space, m_start, X_end);
+  if (!leg.ok || bareWorld({}, m_configuration, options, false)->inCollision(space.full(leg.waypoints.back()))) return false;
+  for (std::size_t i = 1; i < leg.waypoints.size(); ++i) {
+    if (!space.segmentFree(leg.waypoints[i - 1], leg.waypoints[i])) return false;
+  }
+  const auto timed = timedLeg(workcell(), space, leg, {std::min(workcell().approach_speed, workcell().max_tool_speed)});
+  if (!timed) return false;
+  m_plan.notes.push_back("The gripper touches " + quoted(m_grip.touched) + " and backs straight off it first.");
+  appendStage(m_plan, "back off", true, *timed);
+  m_start = leg.waypoints.back();
+  m_configuration = space.full(m_start);
+  return true;
+}
+
+std::unique_ptr<CollisionWorld> PlanningRun::bareWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q,
+                                                       const CollisionOptions& options, bool may_touch) const {
+  const Grip grip = gripAt(workcell(), m_objects, q);
+  std::vector<WorldObject> objects = withHeldAttached(workcell(), m_objects, grip, q);
+  objects.insert(objects.end(), extra.begin(), extra.end());
   auto world = std::make_unique<CollisionWorld>(workcell().model, objects, m_allowed, options);
+  allowGrip(*world, workcell(), objects, grip);
+  for (const auto& name : grip.touched) {
+    if (may_touch) world->allow(name, workcell().gripper->links);
+  }
+  return world;
+}
+
+std::unique_ptr<CollisionWorld> PlanningRun::makeWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q) {
+  CollisionOptions options;
+  options.moving = movingIndices(model(), workcell().arm);
+  auto world = bareWorld(extra, q, options, m_keeps_contact);
   const auto [outside, inside] = world->clearances(q, 2 * options.padding);
   if (outside <= options.padding || inside <= options.self_padding) {
     world->setPadding(std::min(options.padding, kStartShare * outside),
@@ -114,6 +178,12 @@ std::unique_ptr<CollisionWorld> PlanningRun::makeWorld(const std::vector<WorldOb
     m_plan.notes.push_back("The motion starts close to something (" + contact.sentence() + ") and keeps as little away.");
   }
   return world;
+}
+
+bool isAvoided(const PlanContext& context, const Eigen::VectorXd& entry) {
+  return std::any_of(context.avoid.begin(), context.avoid.end(), [&](const Eigen::VectorXd& other) {
+    return other.size() == entry.size() && (other - entry).cwiseAbs().maxCoeff() < kSameWay;
+  });
 }
 
 std::string interruption(PlanStatus status, double budget_s) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "planning/collision/collision_world.h"
+#include "planning/macros/grip.h"
 #include "planning/motion/arm_space.h"
 #include "planning/motion/plan.h"
 
@@ -33,11 +34,19 @@ class PlanningRun {
   /// Looks at the workcell and the start: sizes, limits, collisions.  False: the plan says why.
   /// A start up to 2e-3 outside a limit is moved onto it.
   bool begin();
-  /// Arm joints at the start; valid after begin().
+  /// Where the gripper touches a body that it does not hold: backs straight off it, as the plan's first stage, and
+  /// starts from there.  False: the plan says why not.  @pre begin() was true.
+  bool leaveContact();
+  /// Instead: the motion may go on touching such bodies with the gripper's links.
+  void keepContact();
+  /// Arm joints from which to plan on; valid after begin().
   const Eigen::VectorXd& start() const { return m_start; }
+  /// The same as a full configuration.
+  const Eigen::VectorXd& configuration() const { return m_configuration; }
 
-  /// A collision world of the workcell, the context's objects and `extra`, for motions of the arm.  Where the start is
-  /// closer to something than the padding, the padding shrinks to 80 % of that, with a note.
+  /// A collision world of the workcell, the context's objects and `extra`, for motions of the arm.  What the gripper
+  /// holds at q moves with the tool.  Where q is closer to something than the padding, the padding shrinks to 80 % of
+  /// that, with a note.
   std::unique_ptr<CollisionWorld> makeWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q);
 
   /// The plan as it failed.
@@ -48,13 +57,22 @@ class PlanningRun {
  private:
   bool checkContext();
   bool checkLimits();
+  std::unique_ptr<CollisionWorld> bareWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q,
+                                            const CollisionOptions& options, bool may_touch) const;
+  bool backOff(const Eigen::Vector3d& way);
 
   const PlanContext& m_context;
   Plan m_plan;
   double m_started = 0, m_deadline = 0;
-  Eigen::VectorXd m_start;
+  Eigen::VectorXd m_start, m_configuration;
   AllowedPairs m_allowed;
+  std::vector<WorldObject> m_objects;    // the workcell's and the context's
+  Grip m_grip;                           // where the motion starts
+  bool m_keeps_contact = false;
 };
+
+/// Whether a way that enters there is one of those to find another than.
+bool isAvoided(const PlanContext& context, const Eigen::VectorXd& entry);
 
 /// "time ran out after 5.0 s ..." or "cancelled"; for kTimeout and kCancelled.
 std::string interruption(PlanStatus status, double budget_s);

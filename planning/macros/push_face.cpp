@@ -17,7 +17,8 @@ class PushFace final : public FeatureMacro {
             {standOffParameter(0.08),
              {"distance", "m", 0.05, 0.002, 0.5, "How far to push from where the tool's end meets the face."},
              {"face", "choice", 0, 0, 6, "0: the first that can be pushed of those that look at the arm; 1 to 6: the faces across the triad's "
-                                        "edges, far and near, edge by edge."},
+                                        "edges, far and near, edge by edge.",
+              {"any", "edge 1, far", "edge 1, near", "edge 2, far", "edge 2, near", "edge 3, far", "edge 3, near"}},
              approachSpeedParameter(),
              {"push_speed", "m/s", 0.03, 0.001, 0.2, "Speed of pushing."}},
             0.012};
@@ -41,6 +42,7 @@ class PushFace final : public FeatureMacro {
       part.tasks.back().preference = static_cast<int>(part.tasks.size());
     }
     setup.job.obstacles.push_back(box->object(setup.feature.name));
+    setup.job.touchable = objectsThrough(setup.run.context(), box->X_RO.translation());
     setup.job.touchable.push_back(setup.feature.name);
     setup.job.place = box->X_RO.translation();
     setup.job.parts.push_back(std::move(part));

@@ -43,12 +43,15 @@ Reach reachOf(const Workcell& workcell, const Eigen::VectorXd& q) {
   return out;
 }
 
+std::string reachFacts(const Reach& reach, const std::string& what, const Eigen::Vector3d& point) {
+  return what + " is " + metres((point - reach.shoulder).norm()) + " from the shoulder, the arm reaches " + metres(reach.length);
+}
+
 std::string reachAdvice(const Reach& reach, const std::string& what, const Eigen::Vector3d& point) {
   const Eigen::Vector3d offset = point - reach.shoulder;
   const double distance = offset.norm();
   const double comfortable = kComfort * reach.length;
-  const std::string facts =
-      what + " is " + metres(distance) + " from the shoulder, the arm reaches " + metres(reach.length);
+  const std::string facts = reachFacts(reach, what, point);
   if (std::abs(offset.z()) > comfortable) {
     return facts + ": it is " + metres(std::abs(offset.z())) + (offset.z() > 0 ? " above" : " below") +
            " the shoulder, driving does not help";

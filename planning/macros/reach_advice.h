@@ -19,6 +19,9 @@ struct Reach {
 
 Reach reachOf(const Workcell& workcell, const Eigen::VectorXd& q);
 
+/// "its middle is 1.31 m from the shoulder, the arm reaches 1.05 m"
+std::string reachFacts(const Reach& reach, const std::string& what, const Eigen::Vector3d& point);
+
 /// "its middle is 1.31 m from the shoulder, the arm reaches 1.05 m: drive 0.26 m closer", or what else would help.
 std::string reachAdvice(const Reach& reach, const std::string& what, const Eigen::Vector3d& point);
 

@@ -8,8 +8,8 @@ std::vector<MacroParameter> scanParameters() {
           {"stand_off", "m", 0.10, 0.01, 1, "Between the tool point and the surface, along the tool."},
           {"tilt", "rad", 0, -0.8, 0.8, "Of the tool towards its first direction of travel."},
           travelSpeedParameter(0.05),
-          {"direction", "choice", 0, 0, 1, "Passes along the first edge (0) or the second (1)."},
-          {"roll_free", "choice", 1, 0, 1, "1: the tool may turn about its own axis; 0: its x stays along the passes."}};
+          {"direction", "choice", 0, 0, 1, "Passes along the first edge (0) or the second (1).", {"first edge", "second edge"}},
+          {"roll_free", "choice", 1, 0, 1, "1: the tool may turn about its own axis; 0: its x stays along the passes.", {"held", "free"}}};
 }
 
 RasterSpec scanSpec(const MacroArguments& arguments) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/text.h"
+#include "planning/macros/task_advice.h"
 #include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
@@ -17,6 +18,8 @@ constexpr std::size_t kEnoughOfLong = 3;
 constexpr double kLong = 0.6;            // stages of that length in all are long [m]
 constexpr int kIterations = 4000;
 constexpr double kNoWay = 1e-6;          // [rad]
+constexpr double kAdviceStep = 0.06;     // [m]
+constexpr double kAdviceTurn = 0.3;      // [rad]
 
 std::size_t enoughFor(const TaskPart& part) {
   double length = 0;
@@ -34,7 +37,7 @@ std::size_t endOfGroup(const TaskPart& part, std::size_t first) {
 }  // namespace
 
 Eigen::VectorXd withGripperOpen(PlanningRun& run) {
-  Eigen::VectorXd q = run.context().start;
+  Eigen::VectorXd q = run.configuration();
   const auto& gripper = run.workcell().gripper;
   if (!gripper) return q;
   const auto joint = run.model().jointIndex(gripper->joint);
@@ -47,7 +50,7 @@ Eigen::VectorXd withGripperOpen(PlanningRun& run) {
 }
 
 Plan TaskPlanner::plan() {
-  m_q = m_job.open_gripper ? withGripperOpen(m_run) : m_run.context().start;
+  m_q = m_job.open_gripper ? withGripperOpen(m_run) : m_run.configuration();
   const auto free_world = m_run.makeWorld(m_job.obstacles, m_q);
   const auto touch_world = m_run.makeWorld(m_job.obstacles, m_q);
   auto& notes = m_run.plan().notes;      // both worlds look at the same start and say the same
@@ -65,7 +68,7 @@ Plan TaskPlanner::plan() {
   TaskSearch ways(m_run, free, touching);
   if (!search(ways, free)) {
     m_run.plan().min_clearance = 0;
-    if (!interrupted()) return explain(ways.refusals(), m_job.parts[m_failed_part]);
+    if (!interrupted()) return explain(ways.refusals(), m_job.parts[m_failed_part], free);
     const PlanStatus status = m_run.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
     return m_run.fail(status, interruption(status, m_run.context().budget_s));
   }
@@ -73,6 +76,21 @@ Plan TaskPlanner::plan() {
   measureRatios(m_run.workcell(), plan);
   plan.goal = free.tip(plan.trajectory.points.back().positions);
   return m_run.finish();
+}
+
+// The tool poses of each way, coarsely.
+std::vector<std::vector<Pose>> TaskPlanner::waysOf(const TaskPart& part) {
+  std::vector<std::vector<Pose>> ways;
+  for (const auto& task : part.tasks) {
+    std::vector<Pose> way{task.stages.empty() ? task.X_entry : task.stages.front().path.start()};
+    for (const auto& stage : task.stages) {
+      for (const double s : stage.path.stations(kAdviceStep, kAdviceTurn)) {
+        if (s > 0) way.push_back(stage.path.at(s));
+      }
+    }
+    ways.push_back(std::move(way));
+  }
+  return ways;
 }
 
 // Whether any way of a part can be followed at all; from where does not matter yet.
@@ -118,7 +136,8 @@ bool TaskPlanner::searchPart(TaskSearch& search, const ArmSpace& free, std::size
   for (std::size_t first = 0; first < part.tasks.size() && !interrupted();) {
     m_run.progress(done + 0.1 / static_cast<double>(m_job.parts.size()), "looking for ways to hold the tool");
     const std::size_t last = endOfGroup(part, first);
-    std::vector<FollowedTask> found = search.find(part, first, last, from, enoughFor(part));
+    std::vector<FollowedTask> found = search.find(part, first, last, from, enoughFor(part) + m_run.context().avoid.size());
+    if (k == 0) dropAvoided(found);
     first = last;
     if (found.empty() || interrupted()) continue;
     m_any_goal = true;
@@ -126,6 +145,13 @@ bool TaskPlanner::searchPart(TaskSearch& search, const ArmSpace& free, std::size
     if (move(free, search, part, std::move(found), from)) return true;
   }
   return false;
+}
+
+void TaskPlanner::dropAvoided(std::vector<FollowedTask>& found) {
+  const auto known = [this](const FollowedTask& task) { return isAvoided(m_run.context(), task.entry); };
+  const auto kept = std::remove_if(found.begin(), found.end(), known);
+  m_any_avoided = m_any_avoided || kept != found.end();
+  found.erase(kept, found.end());
 }
 
 // Plans to any of the entries; one whose timed motion cannot be certified is left out and the rest tried again.
@@ -180,43 +206,60 @@ bool TaskPlanner::time(const ArmSpace& free, TaskSearch& search, const TaskPart&
     add("transit", false, free, standStill(cell.armJointNames(), task.entry, 0.1));
   }
   if (!task.task->note.empty()) next.notes.push_back(task.task->note);
+  if (next.entry.size() == 0 && !part.from_here) next.entry = task.entry;
   m_run.plan() = std::move(next);
   return true;
 }
 
-Plan TaskPlanner::explain(const TaskRefusals& refusals, const TaskPart& part) {
+Plan TaskPlanner::explain(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free) {
   const std::optional<Pose> pose = refusals.pose;
+  if (m_any_avoided) return m_run.fail(PlanStatus::kNoPath, "There is no other way to do it than those shown.");
   if (m_any_goal) {
+    m_run.plan().failed_stage = "transit";
     return m_run.fail(PlanStatus::kNoPath,
                       "The task can be done, but no collision-free way to its beginning was found in " +
                           formatFixed(m_run.elapsed(), 1) + " s. Start from another pose (ready), or clear the space around " +
                           m_job.subject + ".",
                       0, pose);
   }
-  if (refusals.stopped > 0) return explainStop(refusals);
+  if (refusals.stopped > 0) return explainStop(refusals, part, free);
+  m_run.plan().failed_stage = part.tasks.front().stages.empty() ? "transit" : part.tasks.front().stages.front().name;
   if (refusals.colliding > 0) {
+    adviseObstacle(m_run, refusals.contact, target());
+    adviseDriving(m_run, free, waysOf(part));
     return m_run.fail(PlanStatus::kGoalInCollision,
                       "However the tool is held at " + m_job.subject + ", the arm would collide: " + refusals.contact.sentence() +
                           ". Clear the space there, give more stand-off, or drive to another side.",
                       0, pose);
   }
   const Pose wanted = pose.value_or(part.tasks.front().X_entry);
+  const Reach reach = reachOf(m_run.workcell(), m_q);
+  const bool advised = adviseDriving(m_run, free, waysOf(part));
   return m_run.fail(PlanStatus::kUnreachable,
-                    "It is out of reach: " + reachAdvice(reachOf(m_run.workcell(), m_q), m_job.subject, m_job.place) + ".", 0, wanted);
+                    "It is out of reach: " + (advised ? reachFacts(reach, m_job.subject, m_job.place) + ", or the hand cannot be turned so there; drive nearer"
+                                                      : reachAdvice(reach, m_job.subject, m_job.place)) + ".",
+                    0, wanted);
 }
 
-Plan TaskPlanner::explainStop(const TaskRefusals& refusals) {
+Plan TaskPlanner::explainStop(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free) {
+  m_run.plan().failed_stage = refusals.stage;
   const int share = static_cast<int>(100 * (refusals.furthest - std::floor(refusals.furthest)));
   const std::string where = "The stage \"" + refusals.stage + "\" stops after " + std::to_string(share) + " % of its way: ";
-  if (refusals.by_contact) {
+  if (refusals.stop_contact) adviseObstacle(m_run, *refusals.stop_contact, target());
+  if (part.from_here) adviseRoll(m_run, free, waysOf(part).front());
+  else adviseDriving(m_run, free, waysOf(part));
+  if (refusals.stop_contact) {
     return m_run.fail(PlanStatus::kApproachBlocked,
                       where + refusals.why + ". Clear it out of the way, or ask for a shorter way.", refusals.waypoint, refusals.pose);
   }
   const Reach reach = reachOf(m_run.workcell(), m_q);
   const Eigen::Vector3d p = refusals.pose ? refusals.pose->translation() : m_job.place;
+  const std::string why = refusals.why.empty() ? std::string() : " (" + refusals.why + ")";
+  const bool advised = !m_run.plan().advice.empty();
   return m_run.fail(refusals.stage == "approach" ? PlanStatus::kApproachBlocked : PlanStatus::kUnreachable,
-                    where + "the arm cannot follow it further. " + reachAdvice(reach, "The next point", p) +
-                        ", or ask for a shorter way.",
+                    where + "the arm cannot follow it further" + why + ". " +
+                        (advised ? reachFacts(reach, "The next point", p) : reachAdvice(reach, "The next point", p)) +
+                        ". Or ask for a shorter way.",
                     refusals.waypoint, refusals.pose);
 }
 

@@ -45,8 +45,11 @@ class TaskPlanner {
             const Eigen::VectorXd& from);
   bool time(const ArmSpace& free, TaskSearch& search, const TaskPart& part, const FollowedTask& task,
             const std::vector<Eigen::VectorXd>& way);
-  Plan explain(const TaskRefusals& refusals, const TaskPart& part);
-  Plan explainStop(const TaskRefusals& refusals);
+  static std::vector<std::vector<Pose>> waysOf(const TaskPart& part);
+  void dropAvoided(std::vector<FollowedTask>& found);
+  Plan explain(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free);
+  Plan explainStop(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free);
+  std::string target() const { return m_job.obstacles.empty() ? std::string() : m_job.obstacles.front().name; }
   bool interrupted() const { return m_run.cancelled() || m_run.timeUp(); }
 
   PlanningRun& m_run;
@@ -54,6 +57,7 @@ class TaskPlanner {
   Eigen::VectorXd m_q;
   std::size_t m_failed_part = 0;
   bool m_any_goal = false;               // of the part that failed
+  bool m_any_avoided = false;
 };
 
 }  // namespace longarm::planning

@@ -127,8 +127,8 @@ std::vector<TaskSearch::Rough> TaskSearch::entries(const TaskPart& part, const T
   return out;
 }
 
-void TaskSearch::noteStop(const ToolTask& task, const Rungs& rungs, std::size_t reached, bool by_contact,
-                          const std::string& why) {
+void TaskSearch::noteStop(const ToolTask& task, const Rungs& rungs, std::size_t reached,
+                          const std::optional<Contact>& contact, const std::string& why) {
   ++m_refusals.stopped;
   const std::size_t next = std::min(reached + 1, rungs.stage.size() - 1);
   const ToolStage& stage = task.stages[rungs.stage[next]];
@@ -136,9 +136,9 @@ void TaskSearch::noteStop(const ToolTask& task, const Rungs& rungs, std::size_t 
   const double furthest = static_cast<double>(rungs.stage[next]) + way / stage.path.length();
   if (furthest <= m_refusals.furthest) return;
   m_refusals.furthest = furthest;
-  m_refusals.by_contact = by_contact;
+  m_refusals.stop_contact = contact;
   m_refusals.stage = stage.name;
-  m_refusals.why = why;
+  m_refusals.why = contact ? contact->sentence() : why;
   m_refusals.waypoint = static_cast<int>(next);
   m_refusals.pose = rungs.ladder.X_RT[next];
 }
@@ -157,7 +157,7 @@ std::vector<TaskSearch::Rough> TaskSearch::roughWays(const TaskPart& part, const
     way.path = followRungs(m_solver, rungs.ladder, start.path.joints.front(), start.path.rolls.front(), options, reached);
     way.cost = start.cost + way.path.cost;
     if (!way.path.joints.empty()) out.push_back(std::move(way));
-    else noteStop(task, rungs, reached, m_rung_contact.has_value(), m_rung_contact ? m_rung_contact->sentence() : std::string());
+    else noteStop(task, rungs, reached, m_rung_contact);
   }
   if (!out.empty() || starts.empty() || stop() || !task.roll_free) return out;
   std::vector<LadderPath> all;
@@ -174,23 +174,23 @@ std::optional<StraightLeg> TaskSearch::followStage(const ToolTask& task, std::si
   const ToolStage& stage = task.stages[k];
   const ArmSpace& space = spaceOf(stage);
   const auto X_RT = [&](double s) { return rolled(stage.path.at(s), rungs.rollAt(k, s, rolls)); };
-  const auto stopped = [&](double way, bool by_contact, const std::string& why) -> std::optional<StraightLeg> {
-    noteStop(task, rungs, rungs.rungAt(k, way), by_contact, why);
+  const auto stopped = [&](double way, const std::optional<Contact>& by, const std::string& why = {}) -> std::optional<StraightLeg> {
+    noteStop(task, rungs, rungs.rungAt(k, way), by, why);
     return {};
   };
   LegOptions options;
   options.even_step = kEvenStep;
   const double step = stage.path.length() > kLong ? kFineStepOfLong : kFineStep;
   StraightLeg leg = followPath(space, arm, X_RT, stage.path.stations(step, kFineTurn), options);
-  if (!leg.ok) return stopped(leg.fraction * stage.path.length(), false, leg.why);
+  if (!leg.ok) return stopped(leg.fraction * stage.path.length(), {}, "the next piece " + leg.next);
   Contact contact;
   for (std::size_t i = 1; i < leg.waypoints.size(); ++i) {
     if (i % 16 == 0 && stop()) return {};
-    if (!space.segmentFree(leg.waypoints[i - 1], leg.waypoints[i], &contact)) return stopped(leg.way[i - 1], true, contact.sentence());
+    if (!space.segmentFree(leg.waypoints[i - 1], leg.waypoints[i], &contact)) return stopped(leg.way[i - 1], contact);
   }
   const LegDeviation off = splineDeviation(space, leg, X_RT);
   if (off.position > kMostDeviation || off.angle > kMostTurn) {
-    return stopped(0, false, "the arm would leave the path by " + formatFixed(off.position * 1e3, 2) + " mm");
+    return stopped(0, {}, "the arm would leave the path by " + formatFixed(off.position * 1e3, 2) + " mm");
   }
   return leg;
 }

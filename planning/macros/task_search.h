@@ -28,7 +28,7 @@ struct TaskRefusals {
   int unreachable = 0;                   ///< No joints reach the entry.
   int colliding = 0;                     ///< They do, but touch something there.
   int stopped = 0;                       ///< A stage cannot be followed to its end.
-  bool by_contact = false;               ///< ... because something is in the way.
+  std::optional<Contact> stop_contact;   ///< ... because something is in the way.
   double furthest = -1;                  ///< Stage number plus the share of it that was reached.
   std::string stage, why;                ///< Of the furthest; `why` is a clause.
   int waypoint = -1;                     ///< Rung at which it stopped.
@@ -60,7 +60,8 @@ class TaskSearch {
   std::optional<StraightLeg> followStage(const ToolTask& task, std::size_t k, const Rungs& rungs,
                                          const std::vector<double>& rolls, const Eigen::VectorXd& arm);
   std::optional<FollowedTask> refine(const ToolTask& task, const Rungs& rungs, const Rough& rough);
-  void noteStop(const ToolTask& task, const Rungs& rungs, std::size_t reached, bool by_contact, const std::string& why);
+  void noteStop(const ToolTask& task, const Rungs& rungs, std::size_t reached, const std::optional<Contact>& contact,
+                const std::string& why = {});
   bool stop() const { return m_run.cancelled() || m_run.timeUp(); }
 
   PlanningRun& m_run;

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 
+#include "planning/collision/body_distance.h"
 #include "planning/collision/bounds.h"
 
 namespace longarm::planning {
 namespace {
+
+constexpr double kInside = 0.002;        // model errors [m]
+constexpr double kPoint = 5e-4;          // radius of a point that FCL can handle [m]
 
 // Furthest way of a bounded shape along a direction, both in one frame.
 double supportOf(const ShapeBounds& bounds, const Pose& X, const Eigen::Vector3d& direction) {
@@ -60,15 +64,21 @@ double heldBelow(const PlanContext& context, const Eigen::Vector3d& down) {
 }
 
 std::vector<std::string> objectsNear(const PlanContext& context, const Eigen::Vector3d& p, double distance) {
-  const PlacedBounds here = place(boundsOf(Sphere{1e-4}), Pose(Eigen::Translation3d(p)));
+  WorldObject here;
+  here.shape = Sphere{kPoint};
+  here.X_WO.translation() = p;
   std::vector<std::string> names;
   for (const auto* list : {&context.workcell->objects, &context.objects}) {
     for (const auto& object : *list) {
       if (!object.collides || !object.attached_link.empty()) continue;
-      if (distanceBound(here, place(boundsOf(object.shape), object.X_WO)) < distance) names.push_back(object.name);
+      if (bodyDistance(here, object, distance + kPoint) < distance) names.push_back(object.name);
     }
   }
   return names;
+}
+
+std::vector<std::string> objectsThrough(const PlanContext& context, const Eigen::Vector3d& p) {
+  return objectsNear(context, p, kInside);
 }
 
 }  // namespace longarm::planning

@@ -19,8 +19,11 @@ double toolOverhang(const Workcell& workcell, const Eigen::VectorXd& q);
 /// origin, in the direction `down` (unit, root frame) at q; 0 when nothing is held [m].
 double heldBelow(const PlanContext& context, const Eigen::Vector3d& down);
 
-/// Names of the workcell's and the context's bodies, not carried ones, that come within `distance` of p by their bounds.
+/// Names of the workcell's and the context's bodies, not carried ones, that come within `distance` of p.
 std::vector<std::string> objectsNear(const PlanContext& context, const Eigen::Vector3d& p, double distance);
+
+/// Those that p lies in: a marked thing itself, where the world knows it.
+std::vector<std::string> objectsThrough(const PlanContext& context, const Eigen::Vector3d& p);
 
 /// Whether `link` is moved by the arm's last joint.
 bool beyondArm(const Workcell& workcell, int link);

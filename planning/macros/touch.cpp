@@ -17,7 +17,7 @@ class Touch final : public FeatureMacro {
     return {"touch", "Touch", "Brings the tool point to the marked point, straight for the last part.", vision::FeatureKind::kPoint,
             {standOffParameter(0.10),
              {"gap", "m", 0, -0.02, 0.2, "Left between the tool point and the point; negative presses."},
-             {"from", "choice", 0, 0, 2, "Side to come from: 0 the arm's, 1 above, 2 level from the arm's side."},
+             {"from", "choice", 0, 0, 2, "Side to come from: 0 the arm's, 1 above, 2 level from the arm's side.", {"arm's side", "above", "level"}},
              approachSpeedParameter(0.02)},
             0.006};
   }

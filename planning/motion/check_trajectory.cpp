@@ -79,9 +79,21 @@ class Sweep {
     }
   }
 
-  // Whether `object` is carried by, or next to, the link of `other`.
+  bool isGripper(const std::string& link) const {
+    if (!m_workcell.gripper) return false;
+    const auto& links = m_workcell.gripper->links;
+    return std::find(links.begin(), links.end(), link) != links.end();
+  }
+  // Whether what hangs on this link is in the gripper's hand.
+  bool gripped(int link) const {
+    const std::string& name = m_workcell.model->links()[static_cast<std::size_t>(link)].name;
+    return name == m_workcell.arm.tip_link || isGripper(name);
+  }
+
+  // Whether `object` is carried by, or next to, the link of `other`, or in the gripper of which that is a part.
   bool holds(const SweptBody& object, const SweptBody& other) const {
     if (!object.object || object.link < 0 || other.link < 0) return false;
+    if (gripped(object.link) && isGripper(other.name)) return true;
     for (const auto& joint : m_workcell.model->joints()) {
       const bool joins = (joint.parent_link == object.link && joint.child_link == other.link) ||
                          (joint.child_link == object.link && joint.parent_link == other.link);

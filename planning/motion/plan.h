@@ -38,11 +38,14 @@ struct Plan {
   PlanStatus status = PlanStatus::kNoPath;
   std::string reason;                             ///< A sentence; empty when ok.
   std::string macro;
+  std::string failed_stage;                       ///< Name of the stage that could not be done; empty when ok or before any.
+  std::vector<std::string> advice;                ///< What would help: sentences, each tried out and not guessed.
   int failed_waypoint = -1;
   std::optional<Pose> failed_pose;                ///< X_root_tip that was refused, to mark in the scene.
   Trajectory trajectory;                          ///< Of the arm's joints; empty unless ok.
   std::vector<PlanStage> stages;
   Eigen::VectorXd start_configuration;            ///< Full q the plan was made for.
+  Eigen::VectorXd entry;                          ///< Arm joints where the first free motion ends; empty without one.
   Pose goal = Pose::Identity();                   ///< X_root_tip at the end.
   double planning_seconds = 0;
   double min_clearance = 0;                       ///< [m]
@@ -62,6 +65,7 @@ struct PlanContext {
   std::vector<WorldObject> objects;               ///< Beyond the workcell's own.
   Eigen::VectorXd start;                          ///< Full configuration q.
   std::map<std::string, double> arguments;        ///< Of the macro, by MacroParameter::name; others take their default.
+  std::vector<Eigen::VectorXd> avoid;             ///< Entries of plans to find another way than.
   unsigned seed = 1;
   double budget_s = 5;
   CancelToken cancel;

@@ -49,6 +49,7 @@ struct Follower {
   }
 
   bool fail(double at, const std::string& what) {
+    leg.next = what;
     leg.why = "the straight leg stops after " + formatFixed(100 * at, 0) + " % of its way: the next piece " + what;
     return false;
   }

@@ -26,6 +26,7 @@ struct StraightLeg {
   bool ok = false;
   double fraction = 0;                   ///< Of the way that was reached.
   std::string why;                       ///< A sentence; empty when ok.
+  std::string next;                      ///< What is wrong with the next piece, as a verb and what follows.
   std::vector<Eigen::VectorXd> waypoints;        ///< Arm joints, start to end.
   std::vector<double> way;               ///< Way of the tool at each [m] (or [rad], if it only turns).
 };

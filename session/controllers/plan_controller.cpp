@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/text.h"
+#include "planning/macros/accuracy.h"
+#include "planning/macros/macro_arguments.h"
 
 namespace longarm::session {
 
@@ -75,13 +77,63 @@ std::vector<MacroRow> PlanController::macros() const {
     row.takes = info.takes;
     row.reason = whyNot(info);
     row.enabled = row.reason.isEmpty();
+    row.parameters = info.parameters;
+    judge(info, row);
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-Status PlanController::plan(const QString& name) {
-  const planning::Macro* macro = m_macros ? planning::findMacro(*m_macros, name.toStdString()) : nullptr;
+void PlanController::judge(const planning::MacroInfo& info, MacroRow& row) const {
+  row.accuracy_need_m = info.accuracy_need;
+  const vision::Feature* feature = m_document.selectedFeature();
+  if (!info.takes || feature == nullptr || feature->kind != *info.takes) return;
+  const auto verdict = planning::judgeAccuracy(planning::uncertaintyOf(*feature), info.accuracy_need);
+  row.go = QString::fromStdString(verdict.go);
+  row.accuracy = QString::fromStdString(verdict.note);
+}
+
+const planning::Macro* PlanController::macro(const QString& name) const {
+  return m_macros ? planning::findMacro(*m_macros, name.toStdString()) : nullptr;
+}
+
+void PlanController::setSettings(MacroSettings settings) {
+  m_settings = std::move(settings);
+  Q_EMIT argumentsChanged({});
+}
+
+std::map<std::string, double> PlanController::arguments(const QString& name) const {
+  std::map<std::string, double> values;
+  const planning::Macro* found = macro(name);
+  if (found == nullptr) return values;
+  const planning::MacroInfo info = found->info();
+  for (const auto& parameter : info.parameters) values[parameter.name] = parameter.value;
+  const auto set = m_settings.find(info.name);
+  if (set == m_settings.end()) return values;
+  for (const auto& [parameter, value] : set->second) {
+    if (planning::MacroArguments::from(info, {{parameter, value}})) values[parameter] = value;
+  }
+  return values;
+}
+
+Status PlanController::setArgument(const QString& name, const QString& parameter, double value) {
+  const planning::Macro* found = macro(name);
+  if (found == nullptr) return {ErrorCode::kNotFound, "There is no macro \"" + name.toStdString() + "\"."};
+  const auto good = planning::MacroArguments::from(found->info(), {{parameter.toStdString(), value}});
+  if (!good) return good.error();
+  m_settings[name.toStdString()][parameter.toStdString()] = value;
+  Q_EMIT argumentsChanged(name);
+  return {};
+}
+
+void PlanController::resetArguments(const QString& name) {
+  if (m_settings.erase(name.toStdString()) > 0) Q_EMIT argumentsChanged(name);
+}
+
+Status PlanController::plan(const QString& name) { return plan(name, {}); }
+
+Status PlanController::plan(const QString& name, std::vector<Eigen::VectorXd> avoid) {
+  const planning::Macro* macro = this->macro(name);
   if (macro == nullptr) {
     return {ErrorCode::kNotFound, m_macros ? "There is no macro \"" + name.toStdString() + "\"."
                                            : std::string("No workcell is loaded: there is nothing to plan for.")};
@@ -89,16 +141,18 @@ Status PlanController::plan(const QString& name) {
   const planning::MacroInfo info = macro->info();
   if (const QString reason = whyNot(info); !reason.isEmpty()) return {ErrorCode::kRefused, reason.toStdString()};
   cancel();
-  start(*macro, info);
+  start(*macro, info, std::move(avoid));
   return {};
 }
 
-void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info) {
+void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
   const auto workcell = m_document.workcell();
   planning::PlanContext context;
   context.workcell = workcell.get();
   context.start = workcell->model->neutral();
   workcell->model->assign(*m_joints(), context.start);
+  context.arguments = arguments(QString::fromStdString(info.name));
+  context.avoid = avoid;
   context.seed = m_seed;
   context.budget_s = m_budget_s;
   m_cancel = CancelToken();
@@ -109,7 +163,7 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, info.takes ? m_document.selection().primary : FeatureId{}, {}};
+  Request request{++m_generation, info.name, info.takes ? m_document.selection().primary : FeatureId{}, {}, std::move(avoid)};
   if (info.takes) request.feature = *m_document.selectedFeature();
   m_progress = 0;
   m_progress_text.clear();
@@ -134,6 +188,11 @@ void PlanController::deliver(const Request& request, Result<planning::Plan> resu
     Q_EMIT failed(QString::fromStdString(result.error().message));
     return;
   }
+  // All ways were shown: the first one again.
+  if (!result->ok() && result->status == planning::PlanStatus::kNoPath && !request.avoid.empty()) {
+    if (const Status again = replan(); !again) Q_EMIT failed(QString::fromStdString(again.error().message));
+    return;
+  }
   m_planned = request;
   PlanRecord record;
   record.macro = request.macro;
@@ -156,6 +215,26 @@ void PlanController::cancel() {
 
 Status PlanController::replan() {
   if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan to plan again. Choose a macro."};
+  if (const Status selected = selectPlanned(); !selected) return selected;
+  return plan(QString::fromStdString(m_document.plan()->macro));
+}
+
+QString PlanController::whyNotOtherWay() const {
+  if (!m_document.plan() || !m_document.plan()->plan.ok() || !m_planned) return tr("There is no plan.");
+  if (m_document.plan()->plan.entry.size() == 0) return tr("This motion begins where the arm stands: there is one way.");
+  return {};
+}
+
+Status PlanController::planOtherWay() {
+  if (const QString why = whyNotOtherWay(); !why.isEmpty()) return {ErrorCode::kRefused, why.toStdString()};
+  std::vector<Eigen::VectorXd> avoid = m_planned->avoid;
+  avoid.push_back(m_document.plan()->plan.entry);
+  if (const Status selected = selectPlanned(); !selected) return selected;
+  return plan(QString::fromStdString(m_document.plan()->macro), std::move(avoid));
+}
+
+// What the plan was made for.
+Status PlanController::selectPlanned() {
   const PlanRecord& record = *m_document.plan();
   if (record.feature.valid()) {
     if (m_document.item(record.feature) == nullptr) {
@@ -165,7 +244,7 @@ Status PlanController::replan() {
   } else {
     m_document.select({});
   }
-  return plan(QString::fromStdString(record.macro));
+  return {};
 }
 
 void PlanController::discard() {

@@ -4,6 +4,7 @@
 /// PlanController: which macros the selection allows, and planning them without blocking the window.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,7 +26,14 @@ struct MacroRow {
   std::optional<vision::FeatureKind> takes;   ///< Empty: a canned motion.
   bool enabled = false;
   QString reason;                          ///< Why it is disabled: what to do; empty when enabled.
+  double accuracy_need_m = 0;              ///< Of the feature, 95 %; 0: takes none.
+  QString go;                              ///< "go", "ask", "no_go" for the selected feature; empty when it is not measured.
+  QString accuracy;                        ///< Why it is not "go".
+  std::vector<planning::MacroParameter> parameters;
 };
+
+/// Values of macros' parameters, by macro and parameter, where they differ from the defaults.
+using MacroSettings = std::map<std::string, std::map<std::string, double>>;
 
 /// GUI thread only.  A finished plan, good or bad, becomes Document::plan().
 class PlanController final : public QObject {
@@ -43,6 +51,15 @@ class PlanController final : public QObject {
   void setSeed(unsigned seed) { m_seed = seed; }
   void setBudget(double seconds) { m_budget_s = seconds; }
 
+  /// What the operator has set, for whatever workcell; what does not fit this one's macros is not used.
+  const MacroSettings& settings() const { return m_settings; }
+  void setSettings(MacroSettings settings);
+  /// All parameters of a macro with the values it is planned with; empty for an unknown one.
+  std::map<std::string, double> arguments(const QString& macro) const;
+  /// @returns kNotFound, kOutOfLimits: nothing changes then.
+  Status setArgument(const QString& macro, const QString& parameter, double value);
+  void resetArguments(const QString& macro);
+
   State state() const { return m_state; }
   double progress() const { return m_progress; }
   QString progressText() const { return m_progress_text; }
@@ -55,6 +72,10 @@ class PlanController final : public QObject {
   void cancel();
   /// Plans the same macro for the same feature from the joints now.
   Status replan();
+  /// Plans the same once more, another way than those shown so far: other joints, another side.  After the last one
+  /// the first comes again.
+  Status planOtherWay();
+  QString whyNotOtherWay() const;                      ///< Empty when there is a plan to find another way than.
   void discard();                                      ///< Clears the plan.
 
   /// Whether the plan may be played from these joints: there is one, it is ok, its feature is as it was, and its
@@ -66,6 +87,7 @@ class PlanController final : public QObject {
   void stateChanged();
   void progressChanged();
   void planned(bool ok);                               ///< Document::plan() is new.
+  void argumentsChanged(const QString& macro);         ///< Empty: of many.
   void failed(const QString& sentence);
 
  private:
@@ -77,11 +99,16 @@ class PlanController final : public QObject {
     std::string macro;
     FeatureId item;
     std::optional<vision::Feature> feature;
+    std::vector<Eigen::VectorXd> avoid;
   };
 
   void rebuildMacros();
   QString whyNot(const planning::MacroInfo& info) const;
-  void start(const planning::Macro& macro, const planning::MacroInfo& info);
+  Status plan(const QString& macro, std::vector<Eigen::VectorXd> avoid);
+  void start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid);
+  Status selectPlanned();
+  void judge(const planning::MacroInfo& info, MacroRow& row) const;
+  const planning::Macro* macro(const QString& name) const;
   void deliver(const Request& request, Result<planning::Plan> result);
   Status checkFeature() const;
   void pollProgress();
@@ -101,6 +128,7 @@ class PlanController final : public QObject {
   double m_progress = 0;
   QString m_progress_text, m_planning;
   std::optional<Request> m_planned;        // Of the plan in the document.
+  MacroSettings m_settings;
   int m_observer = 0;
 };
 

@@ -16,7 +16,7 @@ bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || stat
 
 bool same(const PlayState& a, const PlayState& b) {
   return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing && a.can_play == b.can_play &&
-         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale &&
+         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale && a.ask == b.ask &&
          a.why_not_play == b.why_not_play && a.why_not_back_up == b.why_not_back_up && a.cursor_s == b.cursor_s &&
          a.duration_s == b.duration_s && a.speed == b.speed && a.rate == b.rate;
 }
@@ -104,6 +104,10 @@ void PlayController::rebuild() {
     next.rate = next.loaded ? m_status.rate : 0;
     next.can_scrub = !next.playing;
     checkPlan(next);
+    if (next.why_not_play.isEmpty() && shown->go != "go" && !next.loaded && m_accepted != m_document.plan()->id) {
+      next.ask = shown->go == "ask";
+      next.why_not_play = QString::fromStdString(shown->accuracy_note);
+    }
     if (next.why_not_play.isEmpty()) next.why_not_play = whyNotMove();
     next.why_not_back_up = !m_off_path.isEmpty() ? m_off_path : next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
     if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
@@ -146,6 +150,12 @@ void PlayController::move(double direction) {
   if (!played && played.error().code == ErrorCode::kStale) m_off_path = QString::fromStdString(played.error().message);
   if (!played) Q_EMIT failed(QString::fromStdString(played.error().message));
   refresh(m_runtime->status());
+}
+
+void PlayController::acceptAccuracy() {
+  if (!m_state.ask) return;
+  m_accepted = m_document.plan()->id;
+  rebuild();
 }
 
 void PlayController::play() { move(1); }

@@ -18,6 +18,7 @@ struct PlayState {
   bool playing = false;                    ///< The arm moves along it, or slows down on it.
   bool can_play = false, can_back_up = false;
   bool can_scrub = false;
+  bool ask = false;                        ///< The feature is not known as well as the motion needs it: accept it first.
   bool stale = false;                      ///< The robot or the feature is not where the plan was made for: plan again.
   QString why_not_play, why_not_back_up;   ///< Sentences; empty when it can.
   double cursor_s = 0, duration_s = 0;
@@ -39,6 +40,8 @@ class PlayController final : public QObject {
   /// Takes in what the runtime says now; call it with every poll.
   void refresh(const RuntimeStatus& status);
 
+  /// The operator goes on with the plan on the table although its feature is known less well than it should be.
+  void acceptAccuracy();
   void play();                                         ///< Forwards at |speed|.
   void backUp();                                       ///< Backwards at |speed|.
   void pause();
@@ -63,6 +66,7 @@ class PlayController final : public QObject {
   RobotRuntime* m_runtime = nullptr;
   RuntimeStatus m_status;
   QString m_off_path;                                  // Why the loaded plan cannot go on from here; empty: it can.
+  PlanId m_accepted;                                   // The plan whose accuracy the operator accepted.
   PlanId m_loaded;                                     // The plan the runtime holds; invalid: none of ours.
   double m_cursor = 0, m_speed = 1;
   PlayState m_state;

@@ -16,6 +16,8 @@ using vision::OverlayShape;
 
 namespace {
 
+constexpr double kCross = 8;               // half the cross of a failure [px]
+
 void addMarker(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel) {
   overlay.shapes.push_back({OverlayShape::Kind::kMarker, role, {pixel}, {}});
 }
@@ -116,7 +118,21 @@ void addItem(Overlay& overlay, const Document& document, const SketchItem& item,
   }
 }
 
-void addPlan(Overlay& overlay, const vision::View& view, const OverlayOptions& options) {
+// A cross where a plan failed, with its code and stage.
+void addFailure(Overlay& overlay, const vision::View& view, const planning::Plan& plan) {
+  if (plan.ok() || !plan.failed_pose) return;
+  const auto pixel = view.project(plan.failed_pose->translation());
+  if (!pixel || !view.camera.containsPixel(*pixel)) return;
+  const Eigen::Vector2d down(kCross, kCross), up(kCross, -kCross);
+  for (const Eigen::Vector2d& arm : {down, up}) {
+    overlay.shapes.push_back({OverlayShape::Kind::kPolyline, OverlayRole::kWarning, {*pixel - arm, *pixel + arm}, {}});
+  }
+  const std::string stage = plan.failed_stage.empty() ? std::string() : ", " + plan.failed_stage;
+  addText(overlay, OverlayRole::kWarning, *pixel + Eigen::Vector2d(1.5 * kCross, 0), planning::toString(plan.status) + stage);
+}
+
+void addPlan(Overlay& overlay, const Document& document, const vision::View& view, const OverlayOptions& options) {
+  if (options.path && document.plan()) addFailure(overlay, view, document.plan()->plan);
   if (!options.path || options.path_points == nullptr || options.path_points->size() < 2) return;
   vision::addPath(*options.path_points, view, OverlayRole::kPath, &overlay);
 }
@@ -143,7 +159,7 @@ Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptio
   Overlay overlay;
   const SnapshotPtr snapshot = document.snapshot(id);
   if (!snapshot) return overlay;
-  addPlan(overlay, snapshot->view, options);
+  addPlan(overlay, document, snapshot->view, options);
   for (const auto& item : document.items()) {
     if (options.draft != nullptr && options.draft->id == item.id) continue;
     if (!item.hidden) addItem(overlay, document, item, *snapshot, options, false);
@@ -155,7 +171,7 @@ Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptio
 
 Overlay buildOverlay(const Document& document, const vision::View& view, const OverlayOptions& options) {
   Overlay overlay;
-  addPlan(overlay, view, options);
+  addPlan(overlay, document, view, options);
   for (const auto& item : document.items()) {
     const Measurement& measured = document.measurement(item.id);
     if (item.hidden || !measured.feature || measured.feature->parent != view.parent) continue;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What to draw over one picture: sketch, handles, labels, 95 % ellipses, planned path.
+/// What to draw over one picture: sketch, handles, labels, 95 % ellipses, planned path or where planning failed.
 
 #include <optional>
 #include <vector>

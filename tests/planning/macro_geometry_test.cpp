@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/macros/accuracy.h"
 #include "planning/macros/feature_macro.h"
 #include "planning/macros/macro_arguments.h"
 #include "planning/macros/pipe_grasp.h"
@@ -116,14 +117,12 @@ TEST(FeatureGeometry, MovesVerticesAndCovariancesIntoTheRootFrame) {
 }
 
 TEST(Accuracy, GoesAsksAndRefusesByTheNeed) {
-  Plan plan;
-  judgeAccuracy(plan, 0.004, 0.005);
-  EXPECT_EQ(plan.go, "go");
-  judgeAccuracy(plan, 0.006, 0.005);
-  EXPECT_EQ(plan.go, "ask");
-  EXPECT_NE(plan.accuracy_note.find("6.0 mm"), std::string::npos) << plan.accuracy_note;
-  judgeAccuracy(plan, 0.016, 0.005);
-  EXPECT_EQ(plan.go, "no_go");
+  EXPECT_EQ(judgeAccuracy(0.004, 0.005).go, "go");
+  EXPECT_TRUE(judgeAccuracy(0.004, 0.005).note.empty());
+  const AccuracyVerdict ask = judgeAccuracy(0.006, 0.005);
+  EXPECT_EQ(ask.go, "ask");
+  EXPECT_NE(ask.note.find("6.0 mm"), std::string::npos) << ask.note;
+  EXPECT_EQ(judgeAccuracy(0.016, 0.005).go, "no_go");
 }
 
 TEST(ToolPath, RunsAlongLinesAndArcsByTheWay) {
@@ -176,7 +175,9 @@ TEST(Raster, CoversThePatchWithPassesThatOverlapEnough) {
     const auto raster = rasterOf(patch, spec);
     ASSERT_TRUE(raster.ok());
     const double across = spec.along_v ? patch.width : patch.height, along = spec.along_v ? patch.height : patch.width;
-    if (raster->passes > 1) EXPECT_LE(raster->spacing, spec.swath * (1 - spec.overlap) + 1e-9);
+    if (raster->passes > 1) {
+      EXPECT_LE(raster->spacing, spec.swath * (1 - spec.overlap) + 1e-9);
+    }
     EXPECT_GE((raster->passes - 1) * raster->spacing + spec.swath, std::min(across, spec.swath) - 1e-9);
     // Every point of the patch within half a swath of the path, seen from above.
     for (int k = 0; k < 20; ++k) {
@@ -234,7 +235,9 @@ TEST_F(LadderTest, FollowsALineInOneBranch) {
     const Pose X = m_solver.kinematics().forward(path.joints[i].data()), wanted = rolled(m_ladder.X_RT[i], path.rolls[i]);
     EXPECT_LT((X.translation() - wanted.translation()).norm(), 1e-5);
     EXPECT_LT(angleBetween(X.linear(), wanted.linear()), 1e-5);
-    if (i > 0) EXPECT_LT((path.joints[i] - path.joints[i - 1]).cwiseAbs().maxCoeff(), 0.6);
+    if (i > 0) {
+      EXPECT_LT((path.joints[i] - path.joints[i - 1]).cwiseAbs().maxCoeff(), 0.6);
+    }
   }
 }
 

@@ -134,6 +134,25 @@ TEST(OverlayBuilder, DrawsThePathOnlyWhereItIsSeen) {
   EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPath).empty());
 }
 
+TEST(OverlayBuilder, MarksWhereAPlanFailedWithItsCodeAndStage) {
+  Bench bench;
+  PlanRecord record;
+  record.plan.status = planning::PlanStatus::kUnreachable;
+  record.plan.failed_stage = "approach";
+  record.plan.failed_pose = Pose(Eigen::Translation3d(1.5, 0.1, 1));
+  bench.document.setPlan(record);
+  for (const auto& overlay : {buildOverlay(bench.document, SnapshotId{1}), buildOverlay(bench.document, bench.scene.left)}) {
+    const auto marks = shapesOf(overlay, OverlayRole::kWarning);
+    ASSERT_EQ(marks.size(), 3u) << "a cross and a label";
+    const Eigen::Vector2d middle = 0.5 * (marks[0].points[0] + marks[0].points[1]);
+    EXPECT_LT((middle - *bench.scene.left.project({1.5, 0.1, 1})).norm(), 1e-9);
+    EXPECT_EQ(marks[2].text, "unreachable, approach");
+  }
+  record.plan.failed_pose = Pose(Eigen::Translation3d(-1, 0, 1));
+  bench.document.setPlan(record);
+  EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}), OverlayRole::kWarning).empty()) << "behind the camera";
+}
+
 TEST(OverlayBuilder, WarnsByTheLabelOfAPoorMeasurement) {
   Bench bench;
   // 40 m away the two rays part by 0.36 degrees.

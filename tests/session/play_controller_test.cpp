@@ -99,6 +99,29 @@ TEST_F(PlayControllerTest, RefusesAPlanThatDoesNotStartWhereTheRobotIs) {
   EXPECT_EQ(player(), PlayerState::kEmpty);
 }
 
+TEST_F(PlayControllerTest, AsksBeforeAMotionWhoseFeatureIsKnownTooPoorly) {
+  showPlan(motion());
+  auto record = *m_document.plan();
+  record.plan.go = "ask";
+  record.plan.accuracy_note = "The feature is known to 8 mm, this needs 6 mm.";
+  m_document.setPlan(record);
+  EXPECT_TRUE(m_play.state().ask);
+  EXPECT_FALSE(m_play.state().can_play);
+  EXPECT_EQ(m_play.state().why_not_play.toStdString(), record.plan.accuracy_note);
+  m_play.acceptAccuracy();
+  EXPECT_FALSE(m_play.state().ask);
+  EXPECT_TRUE(m_play.state().can_play);
+  m_document.setPlan(record);
+  EXPECT_FALSE(m_play.state().can_play) << "each plan is accepted by itself";
+  record.plan.go = "no_go";
+  m_document.setPlan(record);
+  EXPECT_FALSE(m_play.state().ask);
+  m_play.acceptAccuracy();
+  m_play.play();
+  run(0.2);
+  EXPECT_EQ(player(), PlayerState::kEmpty) << "beyond three times the need nobody is asked";
+}
+
 TEST_F(PlayControllerTest, NeedsResetAndAFreshPlayAfterStop) {
   showPlan(motion());
   m_play.play();

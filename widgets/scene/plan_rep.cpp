@@ -11,6 +11,7 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
+#include <vtkSphereSource.h>
 #include <vtkWeakPointer.h>
 
 #include "core/require.h"
@@ -19,6 +20,8 @@
 
 namespace longarm::scene {
 namespace {
+
+constexpr double kFailureRadius = 0.05;    // [m]
 
 /// Full configuration of the plan at time t.
 Eigen::VectorXd configurationAt(const planning::RobotModel& model, const planning::Plan& plan, double t) {
@@ -55,6 +58,8 @@ struct PlanRep::Impl {
   vtkWeakPointer<vtkRenderer> renderer;
   vtkNew<vtkPolyData> trail;
   vtkNew<vtkActor> trail_actor;
+  vtkNew<vtkPolyData> failure;               // empty while there is none
+  vtkNew<vtkActor> failure_actor;
   std::unique_ptr<RobotRep> ghost;
   std::vector<std::unique_ptr<RobotRep>> swept;
   std::vector<std::unique_ptr<AxesRep>> axes;
@@ -98,6 +103,18 @@ struct PlanRep::Impl {
     }
   }
 
+  void buildFailure() {
+    failure->Initialize();
+    if (plan.ok() || !plan.failed_pose) return;
+    vtkNew<vtkSphereSource> cage;
+    cage->SetRadius(kFailureRadius);
+    cage->SetThetaResolution(12);
+    cage->SetPhiResolution(8);
+    cage->SetCenter(plan.failed_pose->translation().x(), plan.failed_pose->translation().y(), plan.failed_pose->translation().z());
+    cage->Update();
+    failure->ShallowCopy(cage->GetOutput());
+  }
+
   void buildSwept() {
     swept.clear();
     for (int i = 1; i <= look.swept_ghosts && !plan.trajectory.empty(); ++i) {
@@ -120,6 +137,14 @@ PlanRep::PlanRep(std::shared_ptr<const planning::RobotModel> model, const std::s
   m_impl->trail_actor->GetProperty()->SetLineWidth(3);
   m_impl->paintTrail();
   addProp(m_impl->trail_actor);
+  vtkNew<vtkPolyDataMapper> failure_mapper;
+  failure_mapper->SetInputData(m_impl->failure);
+  m_impl->failure_actor->SetMapper(failure_mapper);
+  m_impl->failure_actor->GetProperty()->SetRepresentationToWireframe();
+  m_impl->failure_actor->GetProperty()->SetColor(1.0, 0.69, 0.0);
+  m_impl->failure_actor->GetProperty()->LightingOff();
+  m_impl->failure_actor->GetProperty()->SetLineWidth(2);
+  addProp(m_impl->failure_actor);
   m_impl->ghost = std::make_unique<RobotRep>(m_impl->model, m_impl->ghostLook(1));
   clear();
 }
@@ -150,6 +175,7 @@ void PlanRep::update(const planning::Plan& plan) {
   m_impl->buildTrail();
   m_impl->buildSwept();
   m_impl->buildAxes();
+  m_impl->buildFailure();
   addTo(m_impl->renderer);  // new children join
   setVisible(visible());
   scrub(0);

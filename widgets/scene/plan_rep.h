@@ -33,7 +33,7 @@ class PlanRep final : public Representation {
   void addTo(vtkRenderer* renderer) override;
   void removeFrom(vtkRenderer* renderer) override;
   void setVisible(bool visible) override;
-  /// A plan that is not ok draws only its failed pose, as red axes.
+  /// A plan that is not ok draws only its failed pose: axes in an amber cage.
   void update(const planning::Plan& plan);
   void clear();
   /// Puts the ghost at time t of the trajectory [s] (clamped).
