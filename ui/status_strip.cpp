@@ -114,7 +114,9 @@ void StatusStrip::showLink() {
                     detail.join(QLatin1Char('\n')));
   const bool trouble = status.link == LinkState::kLost || status.link == LinkState::kClosed || status.link == LinkState::kQuiet;
   m_restart->setVisible(trouble && !m_bench.robot().busy());
-  if (trouble && !status.link_text.empty()) showMessage(QString::fromStdString(status.link_text));
+  if (!trouble && m_message->fullText() == m_link_trouble) m_message->setFullText({});
+  m_link_trouble = trouble ? QString::fromStdString(status.link_text) : QString();
+  showMessage(m_link_trouble);
 }
 
 void StatusStrip::showArm() {

@@ -46,6 +46,7 @@ class StatusStrip final : public QFrame {
   QToolButton *m_cancel, *m_restart;
   QTimer m_forget;
   QStringList m_said;                      // Newest first, for the tooltip.
+  QString m_link_trouble;                // the sentence of a link that is not up, while it is not
 };
 
 }  // namespace longarm::ui
