@@ -39,7 +39,7 @@ std::vector<planning::WorldObject> ContactWatch::bodies(const Pose& X_WB, const 
   std::vector<planning::WorldObject> out = {groundBody()};
   for (const auto& object : world.objects()) out.push_back(object.body);
   for (auto& body : out) body.X_WO = X_WB.inverse() * body.X_WO;
-  if (world.held()) {
+  if (world.heldFreely()) {
     auto& body = out[*world.held() + 1];
     body.attached_link = m_workcell.arm.tip_link;
     body.X_WO = world.heldInTool();

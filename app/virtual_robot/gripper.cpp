@@ -66,8 +66,8 @@ bool Gripper::meet(std::size_t index, double before, const Pose& X_WT, TrueWorld
 }
 
 void Gripper::keep(double seconds, const Pose& X_WT, bool slipping, TrueWorld& world) {
-  world.carry(X_WT);
-  bool lost = !world.held() || m_servo.target() > *m_grip + kOpensBy;
+  bool lost = !world.carry(X_WT) || m_servo.target() > *m_grip + kOpensBy;
+  if (slipping && !world.heldFreely()) lost = true;          // a handle is out of the fingers at once
   if (!lost && slipping) {
     Pose X_WO = world.objects()[*world.held()].body.X_WO;
     X_WO.translation().z() -= kSlipSpeed * seconds;

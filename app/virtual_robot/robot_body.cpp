@@ -297,6 +297,12 @@ std::vector<GoalState> RobotBody::goals() const {
       const double height = m_world.objects()[*index].body.X_WO.translation().z();
       state.reached = height - m_world.startPose(*index).translation().z() >= goal.amount - kGraspTolerance;
     }
+    if (goal.kind == "open") {
+      const auto& all = m_world.mechanisms();
+      state.reached = std::any_of(all.begin(), all.end(), [&](const Mechanism& m) {
+        return m.spec().name == goal.object && std::abs(m.value()) >= goal.amount;
+      });
+    }
     if (goal.kind == "touch") state.reached = m_contacts.touched(goal.object);
     if (goal.kind == "no_contact") {
       const auto& all = m_contacts.contacts();

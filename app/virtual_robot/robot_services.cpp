@@ -81,7 +81,10 @@ RobotServices::Answer RobotServices::truth() const {
   for (const auto& object : m_body.world().objects()) {
     objects.push_back({{"name", object.body.name}, {"pose", poseJson(object.body.X_WO)}});
   }
+  json mechanisms = json::object();
+  for (const auto& mechanism : m_body.world().mechanisms()) mechanisms[mechanism.spec().name] = mechanism.value();
   return rosbridge::Body(json{{"time", m_body.time_s()},
+                              {"mechanisms", mechanisms},
                               {"joints", m_body.trueJoints()},
                               {"objects", objects},
                               {"held", m_body.world().heldName()},

@@ -1,6 +1,8 @@
 #include "app/virtual_robot/true_world.h"
 
 #include <algorithm>
+#include <cmath>
+#include <variant>
 
 #include "app/virtual_robot/shape_rays.h"
 
@@ -9,11 +11,31 @@ namespace {
 
 constexpr double kGravity = 9.81;        // [m/s^2]
 constexpr double kGround = 0;            // height of the ground [m]
+constexpr double kGivesTurn = 0.6;       // a hand turned further than this out of a handle loses it [rad]
+constexpr double kTold = 0.005;          // a mechanism that has moved so far counts as a changed world [rad or m]
 
 }  // namespace
 
 TrueWorld::TrueWorld(const planning::Scenario& scenario) : m_objects(scenario.objects) {
   for (const auto& object : m_objects) m_start.push_back(object.body.X_WO);
+  for (const auto& spec : scenario.mechanisms) {
+    std::vector<std::size_t> moves;
+    for (const auto& name : spec.moves) {
+      if (const auto index = indexOf(name)) moves.push_back(*index);
+    }
+    m_mechanisms.emplace_back(spec, moves);
+  }
+}
+
+bool TrueWorld::guided(std::size_t index) const {
+  return std::any_of(m_mechanisms.begin(), m_mechanisms.end(), [&](const Mechanism& m) { return m.carries(index); });
+}
+
+Mechanism* TrueWorld::mechanismOf(std::size_t index) {
+  for (auto& mechanism : m_mechanisms) {
+    if (mechanism.carries(index)) return &mechanism;
+  }
+  return nullptr;
 }
 
 std::optional<std::size_t> TrueWorld::indexOf(const std::string& name) const {
@@ -24,6 +46,7 @@ std::optional<std::size_t> TrueWorld::indexOf(const std::string& name) const {
 }
 
 void TrueWorld::place(std::size_t index, const Pose& X_WO) {
+  if (guided(index)) return;
   m_objects[index].body.X_WO = X_WO;
   ++m_revision;
 }
@@ -31,11 +54,34 @@ void TrueWorld::place(std::size_t index, const Pose& X_WO) {
 void TrueWorld::hold(std::size_t index, const Pose& X_TO) {
   m_held = index;
   m_X_TO = X_TO;
+  if (const Mechanism* mechanism = mechanismOf(index)) m_told = mechanism->value();
   ++m_revision;
 }
 
-void TrueWorld::carry(const Pose& X_WT) {
-  if (m_held) m_objects[*m_held].body.X_WO = X_WT * m_X_TO;
+bool TrueWorld::carry(const Pose& X_WT) {
+  if (!m_held) return false;
+  if (Mechanism* mechanism = mechanismOf(*m_held)) return lead(*mechanism, X_WT);
+  m_objects[*m_held].body.X_WO = X_WT * m_X_TO;
+  return true;
+}
+
+// The held body turns or slides with its mechanism; the hand may turn about the axis of a round handle.
+bool TrueWorld::lead(Mechanism& mechanism, const Pose& X_WT) {
+  const Pose& start = m_start[*m_held];
+  const Eigen::Vector3d grip_O = m_X_TO.inverse().translation();
+  const double off = mechanism.follow(start * grip_O, X_WT.translation());
+  const Pose motion = mechanism.motion(mechanism.value());
+  for (const std::size_t index : mechanism.moves()) m_objects[index].body.X_WO = motion * m_start[index];
+  if (std::abs(mechanism.value() - m_told) > kTold) {
+    m_told = mechanism.value();
+    ++m_revision;
+  }
+  const Pose& there = m_objects[*m_held].body.X_WO;
+  const Pose wanted = X_WT * m_X_TO;
+  const bool round = std::holds_alternative<planning::Cylinder>(m_objects[*m_held].body.shape);
+  const double turned = round ? std::acos(std::clamp(there.linear().col(2).dot(wanted.linear().col(2)), -1.0, 1.0))
+                              : Eigen::AngleAxisd(there.linear().transpose() * wanted.linear()).angle();
+  return off <= mechanism.spec().gives && turned <= kGivesTurn;
 }
 
 void TrueWorld::release() {
@@ -43,6 +89,11 @@ void TrueWorld::release() {
   std::vector<planning::WorldObject> others;
   for (std::size_t i = 0; i < m_objects.size(); ++i) {
     if (i != *m_held) others.push_back(m_objects[i].body);
+  }
+  if (guided(*m_held)) {
+    m_held.reset();
+    ++m_revision;
+    return;
   }
   const double way = fallDistance(m_objects[*m_held].body, others, kGround);
   if (way > 0) m_falls.push_back({*m_held, way, 0, 0});

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/virtual_robot/mechanism.h"
 #include "core/pose.h"
 #include "planning/world/scenario.h"
 
@@ -23,18 +24,25 @@ class TrueWorld {
   const Pose& startPose(std::size_t index) const { return m_start[index]; }
   std::optional<std::size_t> indexOf(const std::string& name) const;
 
-  /// Moves an object, e.g. when a finger pushes it.
+  const std::vector<Mechanism>& mechanisms() const { return m_mechanisms; }
+  /// Whether it belongs to a mechanism: no finger pushes it aside, and it does not fall.
+  bool guided(std::size_t index) const;
+
+  /// Moves an object, e.g. when a finger pushes it.  No effect on what is guided.
   void place(std::size_t index, const Pose& X_WO);
   /// The gripper has closed on it; `X_TO` is its pose in the tool frame.
   void hold(std::size_t index, const Pose& X_TO);
-  /// Moves the held object to where the tool is.
-  void carry(const Pose& X_WT);
-  /// Lets go: the held object falls straight down until it meets something.
+  /// Moves the held object to where the tool is, or as far along its mechanism as the hand leads it.
+  /// @returns false when the hand has lost it: too far from the way that the mechanism leaves, or turned out of it.
+  bool carry(const Pose& X_WT);
+  /// Lets go: the held object falls straight down until it meets something, unless it is guided.
   void release();
   /// One tick of falling.
   void step(double seconds);
 
   std::optional<std::size_t> held() const { return m_held; }
+  /// Whether what is held moves rigidly with the tool.
+  bool heldFreely() const { return m_held && !guided(*m_held); }
   const Pose& heldInTool() const { return m_X_TO; }
   std::string heldName() const;
   /// Changes whenever an object that is not held has moved, or one is taken or let go.
@@ -46,7 +54,12 @@ class TrueWorld {
     double way, done, speed;
   };
 
+  Mechanism* mechanismOf(std::size_t index);
+  bool lead(Mechanism& mechanism, const Pose& X_WT);
+
   std::vector<planning::ScenarioObject> m_objects;
+  std::vector<Mechanism> m_mechanisms;
+  double m_told = 0;                     // value of the moving mechanism at the last revision
   std::vector<Pose> m_start;
   std::optional<std::size_t> m_held;
   Pose m_X_TO = Pose::Identity();

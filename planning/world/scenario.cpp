@@ -146,20 +146,76 @@ void readFaults(FieldReader& file, Scenario& scenario) {
   }
 }
 
+ScenarioMechanism readMechanism(FieldReader& reader, const Scenario& scenario) {
+  ScenarioMechanism result;
+  result.name = reader.requiredText("name");
+  const std::string kind = reader.requiredText("kind");
+  if (kind != "hinge" && kind != "slide") reader.fail("kind is \"" + kind + "\"; expected hinge or slide");
+  const bool hinge = kind == "hinge";
+  result.kind = hinge ? ScenarioMechanism::Kind::kHinge : ScenarioMechanism::Kind::kSlide;
+  result.moves = reader.texts("moves");
+  if (result.moves.empty()) reader.fail("moves names no object");
+  for (const std::string& name : result.moves) {
+    if (scenario.object(name) == nullptr) reader.fail("moves: no object is called \"" + name + "\"");
+  }
+  result.origin = reader.vector("origin", result.origin, kMaxSize);
+  const Eigen::Vector3d axis = reader.vector("axis", result.axis, 1000);
+  if (axis.norm() < 1e-6) reader.fail("axis is zero; expected a direction");
+  else result.axis = axis.normalized();
+  const char* key = hinge ? "range_deg" : "range_m";
+  const std::vector<double> range = reader.numbers(key, 2, hinge ? -3600 : -10, hinge ? 3600 : 10);
+  if (range.empty()) reader.fail(std::string("key \"") + key + "\" is missing; expected [least, most] from where it starts");
+  if (!range.empty() && !(range[0] <= 0 && range[1] >= 0)) reader.fail(std::string(key) + " does not hold 0, where it starts");
+  if (!range.empty()) {
+    result.lower = range[0] * (hinge ? M_PI / 180 : 1);
+    result.upper = range[1] * (hinge ? M_PI / 180 : 1);
+  }
+  result.gives = reader.number("gives", result.gives, 1e-4, 1);
+  reader.refuseUnknownKeys();
+  return result;
+}
+
+void readMechanisms(FieldReader& file, Scenario& scenario) {
+  const json& list = file.list("mechanisms", 32);
+  std::set<std::string> moved;
+  for (std::size_t i = 0; i < list.size() && file.status(); ++i) {
+    FieldReader reader(list[i], at(file.place(), "mechanisms", i));
+    ScenarioMechanism mechanism = readMechanism(reader, scenario);
+    for (const std::string& name : mechanism.moves) {
+      if (!moved.insert(name).second) reader.fail("moves: \"" + name + "\" is moved already");
+    }
+    if (scenario.mechanism(mechanism.name) != nullptr) reader.fail("two mechanisms are called \"" + mechanism.name + "\"");
+    file.adopt(reader.status());
+    scenario.mechanisms.push_back(std::move(mechanism));
+  }
+}
+
+/// How far a goal wants something moved, in the unit of its kind.
+double goalAmount(FieldReader& reader, const ScenarioGoal& goal, const Scenario& scenario) {
+  if (goal.kind != "open") return reader.number("height", 0, 0, kMaxSize);
+  const ScenarioMechanism* mechanism = scenario.mechanism(goal.object);
+  if (mechanism == nullptr) {
+    reader.fail("open: no mechanism is called \"" + goal.object + "\"");
+    return 0;
+  }
+  const bool hinge = mechanism->kind == ScenarioMechanism::Kind::kHinge;
+  return hinge ? reader.number("angle_deg", 0, 0, 3600) * M_PI / 180 : reader.number("way", 0, 0, kMaxSize);
+}
+
 /// `- {lift: pipe, height: 0.1}`: the kind is the key.
 void readGoals(FieldReader& file, Scenario& scenario) {
   const json& list = file.list("goals", 32);
   for (std::size_t i = 0; i < list.size() && file.status(); ++i) {
     FieldReader reader(list[i], at(file.place(), "goals", i));
     ScenarioGoal goal;
-    for (const char* kind : {"grasp", "lift", "touch", "no_contact"}) {
+    for (const char* kind : {"grasp", "lift", "touch", "open", "no_contact"}) {
       if (!reader.has(kind)) continue;
       if (!goal.kind.empty()) reader.fail("holds both " + goal.kind + " and " + kind + "; expected one goal an entry");
       goal.kind = kind;
       goal.object = reader.text(kind, "");
     }
-    goal.amount = reader.number("height", 0, 0, kMaxSize);
-    if (goal.kind.empty()) reader.fail("names no goal; expected one of grasp, lift, touch, no_contact");
+    goal.amount = goalAmount(reader, goal, scenario);
+    if (goal.kind.empty()) reader.fail("names no goal; expected one of grasp, lift, touch, open, no_contact");
     const bool of_object = goal.kind == "grasp" || goal.kind == "lift";
     if (of_object && scenario.object(goal.object) == nullptr) reader.fail(goal.kind + ": no object is called \"" + goal.object + "\"");
     reader.refuseUnknownKeys();
@@ -237,6 +293,13 @@ const ScenarioObject* Scenario::object(const std::string& wanted) const {
   return nullptr;
 }
 
+const ScenarioMechanism* Scenario::mechanism(const std::string& wanted) const {
+  for (const ScenarioMechanism& candidate : mechanisms) {
+    if (candidate.name == wanted) return &candidate;
+  }
+  return nullptr;
+}
+
 Result<Scenario> parseScenario(const std::string& text, const std::string& path) {
   Result<json> content = vision::jsonFromYaml(text);
   if (!content) return Error{content.error().code, path + ": " + content.error().message};
@@ -253,6 +316,7 @@ Result<Scenario> parseScenario(const std::string& text, const std::string& path)
   scenario.start_pose = file.text("start_pose", scenario.start_pose);
   scenario.ground = file.text("ground", scenario.ground);
   readObjects(file, fs::path(path).parent_path().string(), scenario);
+  readMechanisms(file, scenario);
   readLight(file, scenario.light);
   readImperfections(file, scenario.imperfections);
   readFaults(file, scenario);

@@ -43,10 +43,21 @@ struct ScenarioFault {
   std::string target;                    ///< Camera or joint it strikes; empty: the fault's usual one.
 };
 
+/// Bodies that only turn about a hinge or slide along a rail: a door, a valve, a drawer.
+struct ScenarioMechanism {
+  enum class Kind { kHinge, kSlide } kind = Kind::kHinge;
+  std::string name;
+  std::vector<std::string> moves;        ///< Objects that it carries.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();   ///< A point of the hinge's axis, in the world [m].
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();    ///< Unit; turns right-handed about it, or slides along it.
+  double lower = 0, upper = 0;           ///< From where it starts [rad or m].
+  double gives = 0.02;                   ///< A hand further than this from where it must be loses its hold [m].
+};
+
 struct ScenarioGoal {
-  std::string kind;                      ///< "grasp", "lift", "touch", "no_contact"
-  std::string object;
-  double amount = 0;                     ///< lift: height above the start [m].
+  std::string kind;                      ///< "grasp", "lift", "touch", "open", "no_contact"
+  std::string object;                    ///< Or, of "open", the mechanism.
+  double amount = 0;                     ///< lift: height above the start [m]; open: from the start [rad or m].
 };
 
 struct ScenarioLight {
@@ -75,6 +86,7 @@ struct Scenario {
   std::string robot = "longarm_one";     ///< Built-in robot, or absolute path of a workcell file.
   std::string variant;                   ///< "", "ptz"
   std::vector<ScenarioObject> objects;
+  std::vector<ScenarioMechanism> mechanisms;
   ScenarioLight light;
   std::string ground = "concrete";       ///< Surface of the ground.
   Imperfections imperfections;
@@ -83,7 +95,8 @@ struct Scenario {
   std::string start_pose = "look_ahead"; ///< Canned pose of the workcell.
   std::optional<RandomPipe> random_pipe;
 
-  const ScenarioObject* object(const std::string& name) const;   ///< Null if there is none.
+  const ScenarioObject* object(const std::string& name) const;         ///< Null if there is none.
+  const ScenarioMechanism* mechanism(const std::string& name) const;   ///< Null if there is none.
 };
 
 struct ScenarioInfo {
