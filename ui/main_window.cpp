@@ -8,6 +8,7 @@
 #include <QLabel>
 #include <QMenuBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QVBoxLayout>
 
@@ -38,6 +39,21 @@ MainWindow::MainWindow(Workbench& bench, Appearance& appearance, QSettings& sett
 }
 
 MainWindow::~MainWindow() = default;
+
+namespace {
+
+// A panel that needs more room than there is scrolls, so that the window, and STOP in it, always fits the screen.
+QWidget* scrolled(QWidget* panel) {
+  auto* area = new QScrollArea;
+  area->setFrameShape(QFrame::NoFrame);
+  area->setWidgetResizable(true);
+  area->setFocusPolicy(Qt::NoFocus);
+  area->setMinimumSize(200, 110);
+  area->setWidget(panel);
+  return area;
+}
+
+}  // namespace
 
 void MainWindow::makePanels() {
   m_pictures = new PicturesArea(m_bench, *m_actions, m_appearance);
@@ -71,9 +87,9 @@ void MainWindow::assemble() {
   m_docks->setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("cameras"), tr("Cameras"), m_cameras, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("features"), tr("Features"), m_features, Qt::BottomDockWidgetArea);
-  addDock(QStringLiteral("jog"), tr("Jog arm"), m_jog, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("jog"), tr("Jog arm"), scrolled(m_jog), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
-  addDock(QStringLiteral("macros"), tr("Motions"), m_macros, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   m_docks->tabifyDockWidget(dock("features"), dock("jog"));
   dock("features")->raise();

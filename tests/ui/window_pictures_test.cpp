@@ -1,5 +1,6 @@
 // The whole window without a robot: pictures from files, sketched on with a simulated mouse.
 #include <QAbstractButton>
+#include <QDockWidget>
 #include <QFile>
 #include <QTableView>
 #include <QTest>
@@ -60,6 +61,15 @@ TEST_F(WindowWithPictures, MeasuresAChessboardEdgeWithTwoStrokes) {
   look(QStringLiteral("measured-1280-dark"));
   ASSERT_EQ(bench->document().items().size(), 1U);
   EXPECT_EQ(window->features()->view()->model()->rowCount(), 1);
+  for (auto* dock : window->findChildren<QDockWidget*>()) {
+    dock->raise();
+    SimulatedHand::pump(30);
+    const QSize least = window->minimumSizeHint();
+    EXPECT_LE(least.width(), 1280) << "STOP would be off the screen beside " << dock->windowTitle().toStdString();
+    EXPECT_LE(least.height(), 800) << dock->windowTitle().toStdString();
+  }
+  window->findChild<QDockWidget*>(QStringLiteral("features"))->raise();
+  EXPECT_EQ(window->size(), QSize(1280, 800));
   window->resize(1920, 1080);
   look(QStringLiteral("measured-1920-dark"));
   appearance->setTheme(QStringLiteral("light"));
