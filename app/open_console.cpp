@@ -7,7 +7,8 @@ namespace longarm::app {
 
 void addConsoleOptions(CLI::App& app, ConsoleArguments& arguments) {
   app.add_option("--workcell", arguments.workcell, "Workcell file to open (default: the built-in robot)");
-  app.add_option("--scenario", arguments.scenario, "Training scenario of the virtual robot (default: grab_pipe)");
+  app.add_option("--scenario", arguments.scenario, "Training scenario of the virtual robot (default: grab_pipe)")
+      ->take_last();               // run.sh gives one, and its caller may give another
   app.add_option("--variant", arguments.variant, "Variant of the built-in robot: ptz carries two pan-tilt zoom cameras");
   app.add_option("--views", arguments.views, "A views.yaml whose pictures are opened at the start");
   app.add_option("--theme", arguments.theme, "dark or light")->check(CLI::IsMember({"dark", "light"}));
