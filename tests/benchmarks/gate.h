@@ -58,6 +58,9 @@ std::string toJson(const std::vector<Outcome>& outcomes);
 
 /// The contests of each room.  Empty where they cannot run here; `skipped` then says why, by name.
 std::vector<Contest> stereoContests();
+#ifdef LONGARM_WITH_KDL
+std::vector<Contest> robotContests();
+#endif
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);
 

@@ -50,6 +50,11 @@ int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
   std::map<std::string, std::string> skipped;
   std::vector<Contest> contests = stereoContests();
+#ifdef LONGARM_WITH_KDL
+  for (auto& contest : robotContests()) contests.push_back(std::move(contest));
+#else
+  for (const char* name : {"fk_jacobian", "ik", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
+#endif
   for (auto& contest : paneContests(&skipped)) contests.push_back(std::move(contest));
   std::vector<Budget> budgets = paneBudgets(&skipped);
   std::vector<std::string> known;
