@@ -13,7 +13,7 @@
 namespace longarm::calibration {
 namespace {
 
-constexpr int kSearchSide = 1280;
+constexpr int kSearchSide = 1280, kLiveSide = 320;
 constexpr double kBlurredVariance = 12;   // of the Laplacian, grey levels squared
 
 // Found points with the index of their place on the board.
@@ -30,8 +30,8 @@ cv::Mat greyOf(const cv::Mat& image) {
 }
 
 // Shrinks a large picture for the search; `scale` is its size over the original's.
-cv::Mat searchImage(const cv::Mat& grey, double* scale) {
-  *scale = std::min(1.0, static_cast<double>(kSearchSide) / std::max(grey.cols, grey.rows));
+cv::Mat searchImage(const cv::Mat& grey, int side, double* scale) {
+  *scale = std::min(1.0, static_cast<double>(side) / std::max(grey.cols, grey.rows));
   if (*scale >= 1) return grey;
   cv::Mat small;
   cv::resize(grey, small, cv::Size(), *scale, *scale, cv::INTER_AREA);
@@ -67,9 +67,9 @@ std::vector<int> allIndices(std::size_t n) {
   return out;
 }
 
-Found findChessboard(const cv::Mat& grey, const BoardSpec& spec) {
+Found findChessboard(const cv::Mat& grey, const BoardSpec& spec, int side = kSearchSide) {
   double scale = 1;
-  const cv::Mat small = searchImage(grey, &scale);
+  const cv::Mat small = searchImage(grey, side, &scale);
   Found found;
   const cv::Size size(spec.columns, spec.rows);
   const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
@@ -78,6 +78,15 @@ Found findChessboard(const cv::Mat& grey, const BoardSpec& spec) {
   refine(grey, spec.half_window, &found.pixels);
   found.index = allIndices(found.pixels.size());
   return found;
+}
+
+// Most live pictures hold no board: the check on a small picture says so at once.
+Found findChessboardLive(const cv::Mat& grey, const BoardSpec& spec) {
+  double scale = 1;
+  const cv::Mat small = searchImage(grey, kLiveSide, &scale);
+  if (!cv::checkChessboard(small, cv::Size(spec.columns, spec.rows))) return {};
+  const Found quick = scale < 1 ? findChessboard(grey, spec, kLiveSide) : Found{};
+  return quick.index.empty() ? findChessboard(grey, spec) : quick;
 }
 
 Found findCircles(const cv::Mat& grey, const BoardSpec& spec) {
@@ -137,6 +146,32 @@ Found find(const cv::Mat& grey, const BoardSpec& spec) {
 
 }  // namespace
 
+namespace {
+
+Result<BoardView> viewOf(const Found& found, const BoardSpec& spec, const std::string& name) {
+  const auto points = boardPoints(spec);
+  BoardView view{name, {}};
+  for (std::size_t i = 0; i < found.index.size(); ++i) {
+    const auto at = static_cast<std::size_t>(found.index[i]);
+    if (at < points.size()) view.corners.push_back({points[at], {found.pixels[i].x, found.pixels[i].y}, 0});
+  }
+  return view;
+}
+
+Result<BoardView> detect(const cv::Mat& image, const BoardSpec& spec, const std::string& name, bool live) {
+  if (image.empty()) return Error{ErrorCode::kInvalidInput, name + ": the picture is empty"};
+  try {
+    const cv::Mat grey = greyOf(image);
+    const Found found = live && spec.kind == BoardKind::kChessboard ? findChessboardLive(grey, spec) : find(grey, spec);
+    if (found.index.size() < 4) return notFound(grey, spec);
+    return viewOf(found, spec, name);
+  } catch (const std::exception& exception) {
+    return Error{ErrorCode::kNoSolution, std::string("the board search failed: ") + exception.what()};
+  }
+}
+
+}  // namespace
+
 Result<BoardKind> boardKindFromText(const std::string& text) {
   if (text == "chessboard") return BoardKind::kChessboard;
   if (text == "charuco") return BoardKind::kCharuco;
@@ -153,21 +188,11 @@ std::vector<Eigen::Vector3d> boardPoints(const BoardSpec& spec) {
 }
 
 Result<BoardView> detectBoard(const cv::Mat& image, const BoardSpec& spec, const std::string& name) {
-  if (image.empty()) return Error{ErrorCode::kInvalidInput, name + ": the picture is empty"};
-  try {
-    const cv::Mat grey = greyOf(image);
-    const Found found = find(grey, spec);
-    if (found.index.size() < 4) return notFound(grey, spec);
-    const auto points = boardPoints(spec);
-    BoardView view{name, {}};
-    for (std::size_t i = 0; i < found.index.size(); ++i) {
-      const auto at = static_cast<std::size_t>(found.index[i]);
-      if (at < points.size()) view.corners.push_back({points[at], {found.pixels[i].x, found.pixels[i].y}, 0});
-    }
-    return view;
-  } catch (const std::exception& exception) {
-    return Error{ErrorCode::kNoSolution, std::string("the board search failed: ") + exception.what()};
-  }
+  return detect(image, spec, name, false);
+}
+
+Result<BoardView> detectBoardLive(const cv::Mat& image, const BoardSpec& spec, const std::string& name) {
+  return detect(image, spec, name, true);
 }
 
 std::string otherBoardHint(const cv::Mat& image, const BoardSpec& spec) {

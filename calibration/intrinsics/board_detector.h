@@ -39,6 +39,11 @@ std::vector<Eigen::Vector3d> boardPoints(const BoardSpec& spec);
 ///   of a chessboard's corners may start at either end.  Thread-safe.
 Result<BoardView> detectBoard(const cv::Mat& image, const BoardSpec& spec, const std::string& name);
 
+/// The same for live pictures: most hold no board, and then the answer must come soon.  A chessboard is looked for in a
+/// picture of at most 320 pixels a side and then refined on the full one; where that finds nothing but the picture may
+/// hold one, in the full picture.  Thread-safe.
+Result<BoardView> detectBoardLive(const cv::Mat& image, const BoardSpec& spec, const std::string& name);
+
 /// The sizes near `spec` of a chessboard that is found where `spec` is not, as a hint ("a 9x6 board was found"), or
 /// empty.
 std::string otherBoardHint(const cv::Mat& image, const BoardSpec& spec);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/fixture/calibrate_fixture.h"
+#include "calibration/fixture/fixture_file.h"
 #include "calibration/intrinsics/calibrate_intrinsics.h"
 #include "calibration/intrinsics/corners_file.h"
 #include "calibration/pose/observations_file.h"
@@ -50,6 +51,16 @@ TEST(DamagedFiles, ZoomTables) {
       expectSentence(vision::zoomAt(camera, 0.33));
     }
     EXPECT_TRUE(vision::parseZoomFile(vision::zoomFileText(*file)).ok()) << seed;
+  }
+}
+
+TEST(DamagedFiles, Fixtures) {
+  const std::pair<const char*, const char*> good[] = {
+      {"f.csv", "name,x,y,z\na,0,0,0\nb,1,0,0\nc,0,1,0\nd,0,0,1\ne,1,1,0\nf,1,0,1\n"},
+      {"f.yaml", "points: [[0,0,0],[1,0,0],[0,1,0],{name: top, xyz: [0,0,1]},[1,1,0],[1,0,1]]\npanel: {columns: 4, rows: 3, pitch: 0.3, depths: [2, 3]}\n"}};
+  for (const auto& [file, text] : good) {
+    ASSERT_TRUE(calibration::parseFixture(text, file).ok());
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) expectSentence(calibration::parseFixture(mutate(text, seed), file));
   }
 }
 
