@@ -102,6 +102,12 @@ void TrueWorld::release() {
 }
 
 void TrueWorld::step(double seconds) {
+  m_time_s += seconds;
+  for (std::size_t i = 0; i < m_objects.size(); ++i) {
+    if (m_objects[i].route.empty() || m_held == i) continue;
+    m_objects[i].body.X_WO = m_objects[i].onRoute(m_time_s);
+    if (m_objects[i].body.collides) ++m_revision;
+  }
   for (auto& fall : m_falls) {
     fall.speed += kGravity * seconds;
     const double down = std::min(fall.speed * seconds, fall.way - fall.done);

@@ -37,7 +37,7 @@ class TrueWorld {
   bool carry(const Pose& X_WT);
   /// Lets go: the held object falls straight down until it meets something, unless it is guided.
   void release();
-  /// One tick of falling.
+  /// One tick of falling, and of what is carried about.
   void step(double seconds);
 
   std::optional<std::size_t> held() const { return m_held; }
@@ -64,6 +64,7 @@ class TrueWorld {
   std::optional<std::size_t> m_held;
   Pose m_X_TO = Pose::Identity();
   std::vector<Fall> m_falls;
+  double m_time_s = 0;
   long m_revision = 0;
 };
 

@@ -77,6 +77,18 @@ Shape readShape(const json& map, FieldReader& object, const std::string& folder)
   return shape;
 }
 
+void readRoute(FieldReader& reader, ScenarioObject& object) {
+  const json& list = reader.list("route", 200);
+  for (std::size_t i = 0; i < list.size() && reader.status(); ++i) {
+    FieldReader stop(list[i], at(reader.place(), "route", i));
+    object.route.push_back({stop.pose("pose"), stop.number("rest_s", 2, 0, 3600)});
+    stop.refuseUnknownKeys();
+    reader.adopt(stop.status());
+  }
+  object.travel_s = reader.number("travel_s", object.travel_s, 0.1, 3600);
+  if (!object.route.empty()) object.body.X_WO = object.route.front().X_WO;
+}
+
 ScenarioObject readObject(const json& map, const std::string& place, const std::string& folder, Status& status) {
   FieldReader reader(map, place);
   ScenarioObject object;
@@ -84,6 +96,7 @@ ScenarioObject readObject(const json& map, const std::string& place, const std::
   if (const json* shape = reader.map("shape")) object.body.shape = readShape(*shape, reader, folder);
   if (!reader.has("shape")) reader.fail("key \"shape\" is missing");
   object.body.X_WO = reader.pose("pose");
+  readRoute(reader, object);
   const std::vector<double> rgba = reader.numbers("rgba", 4, 0, 1);
   if (!rgba.empty()) object.body.rgba = Eigen::Vector4d(rgba.data());
   object.body.collides = reader.boolean("collides", true);
@@ -285,6 +298,21 @@ Result<Scenario> loadFile(const std::string& path) {
 }  // namespace
 
 Imperfections Imperfections::none() { return {0, 0, 0, 0, 0}; }
+
+Pose ScenarioObject::onRoute(double time_s) const {
+  double whole = 0;
+  for (const auto& stop : route) whole += stop.rest_s + travel_s;
+  double left = std::fmod(time_s, whole);
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    if (left <= route[i].rest_s) return route[i].X_WO;
+    left -= route[i].rest_s;
+    const double part = left / travel_s;
+    // Starts and ends gently, as a hand does.
+    if (part <= 1) return interpolate(route[i].X_WO, route[(i + 1) % route.size()].X_WO, part * part * (3 - 2 * part));
+    left -= travel_s;
+  }
+  return route.front().X_WO;
+}
 
 const ScenarioObject* Scenario::object(const std::string& wanted) const {
   for (const ScenarioObject& candidate : objects) {

@@ -17,11 +17,25 @@
 
 namespace longarm::planning {
 
-/// A body of the virtual world, in the world frame (base_link where the robot starts).
+/// A place where something that is carried about rests for a while.
+struct RouteStop {
+  Pose X_WO = Pose::Identity();
+  double rest_s = 2;
+};
+
+/// A body of the virtual world, in the world frame (base_link where the robot started).
 struct ScenarioObject {
   WorldObject body;
-  std::string surface;                   ///< "wood", "concrete", "metal", "checker", "carton", "noise" or empty: plain.
+  /// "wood", "concrete", "metal", "checker", "carton", "noise", "chessboard" (9 x 6 inner corners of 30 mm on a face of
+  /// 0.36 x 0.27 m) or empty: plain.
+  std::string surface;
   bool graspable = false;                ///< The gripper can close on it (cylinders and boxes).
+  /// Somebody carries it from stop to stop and begins again; empty: it stays at body.X_WO.
+  std::vector<RouteStop> route;
+  double travel_s = 1;                   ///< From one stop to the next.
+
+  /// Where a route brings it.  @pre route is not empty
+  Pose onRoute(double time_s) const;
 };
 
 /// What the console does not know of the robot.  All drawn from a seed where they say "up to".

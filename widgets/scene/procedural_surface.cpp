@@ -92,6 +92,14 @@ cv::Vec3d carton(double x, double y) {
 
 cv::Vec3d noise(double x, double y) { return grey(120 + 130 * fractal(x, y, 12, 12, 61)); }
 
+// 10 x 7 squares with a white rim of one square: 40 pixels each, so that edges lie between pixels.
+cv::Vec3d chessboard(double x, double y) {
+  constexpr int kSquare = 40;
+  const int column = static_cast<int>(x * kSize) / kSquare - 1, row = static_cast<int>(y * kSize) / kSquare - 1;
+  const bool inside = column >= 0 && column < 10 && row >= 0 && row < 7;
+  return grey(inside && (column + row) % 2 == 0 ? 25 : 235);
+}
+
 struct Recipe {
   cv::Vec3d (*shader)(double, double);
   double tile_m;
@@ -102,7 +110,8 @@ struct Recipe {
 Surface makeSurface(const std::string& name) {
   static const std::map<std::string, Recipe> kRecipes = {
       {"wood", {wood, 0.6}},       {"concrete", {concrete, 1.5}}, {"metal", {metal, 0.25}},
-      {"checker", {checker, 0.4}}, {"carton", {carton, 0.3}},     {"noise", {noise, 0.25}}};
+      {"checker", {checker, 0.4}}, {"carton", {carton, 0.3}},     {"noise", {noise, 0.25}},
+      {"chessboard", {chessboard, 0.03 * kSize / 40}}};
   const auto found = kRecipes.find(name);
   if (found == kRecipes.end()) return {};
   return {shade(found->second.shader), found->second.tile_m};

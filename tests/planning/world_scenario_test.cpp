@@ -1,0 +1,46 @@
+// Things that are carried about, and the scenario that calibration is practised on.
+#include <gtest/gtest.h>
+
+#include "planning/world/scenario.h"
+
+namespace longarm::planning {
+namespace {
+
+std::string scenarioWith(const std::string& object) {
+  return "format: 1\nname: test\nobjects:\n  - {name: thing, shape: {box: [0.1, 0.1, 0.1]}, " + object + "}\n";
+}
+
+TEST(ScenarioRoute, RestsTravelsGentlyAndBeginsAgain) {
+  const auto scenario = parseScenario(scenarioWith("travel_s: 2, route: [{pose: {xyz: [0, 0, 1]}, rest_s: 3}, {pose: {xyz: [1, 0, 1]}, rest_s: 1}]"), "s.yaml");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  const ScenarioObject& thing = scenario->objects.front();
+  EXPECT_EQ(thing.body.X_WO.translation(), Eigen::Vector3d(0, 0, 1)) << "it begins at the first stop";
+  const auto x = [&](double t) { return thing.onRoute(t).translation().x(); };
+  EXPECT_EQ(x(0), 0);
+  EXPECT_EQ(x(3), 0);
+  EXPECT_NEAR(x(4), 0.5, 1e-12);
+  EXPECT_LT(x(3.2), 0.04) << "a hand starts gently";
+  EXPECT_EQ(x(5.5), 1);
+  EXPECT_NEAR(x(7), 0.5, 1e-12) << "on its way back to the first";
+  EXPECT_EQ(x(8 + 2.9), 0);
+}
+
+TEST(ScenarioRoute, MistakesAreToldWithTheirPlace) {
+  for (const auto& [text, part] : {std::pair{"route: [{pose: {xyz: [0, 0]}}]", "route[0]"}, {"route: [{rest: 2}]", "rest"}, {"travel_s: 0", "travel_s"}}) {
+    const auto scenario = parseScenario(scenarioWith(text), "s.yaml");
+    ASSERT_FALSE(scenario.ok()) << text;
+    EXPECT_NE(scenario.error().message.find(part), std::string::npos) << scenario.error().message;
+  }
+}
+
+TEST(ScenarioRoute, TheBuiltInBoardVisitsEnoughPlaces) {
+  const auto scenario = loadScenario("calibration_board");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  const auto* board = scenario->object("board");
+  ASSERT_NE(board, nullptr);
+  EXPECT_GE(board->route.size(), 12U);
+  EXPECT_FALSE(board->body.collides) << "whoever holds it keeps it out of the arm's way";
+}
+
+}  // namespace
+}  // namespace longarm::planning
