@@ -136,6 +136,8 @@ Result<vision::View> cameraView(const planning::Workcell& workcell, const std::s
   Eigen::VectorXd q = workcell.model->neutral();
   workcell.model->assign(state, q);
   view.X_WC = workcell.model->forward(q, *link);
+  // A calibrated mount: the optical frame where the link of the robot's description is not quite.
+  if (file->pose && file->pose->parent == spec->link) view.X_WC = view.X_WC * file->pose->pose;
   if (file->covariance) view.intrinsics_covariance = file->covariance->topLeftCorner<10, 10>();
   if (file->covariance && file->covariance->rows() == 16) {
     // The file's covariance is of the optical frame in its parent; turned to the root it keeps its size.

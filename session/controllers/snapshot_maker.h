@@ -37,7 +37,8 @@ struct PairLimits {
 /// @returns kRefused: skew in ms, its limit, the joint that moves, and what to do.
 Status checkPair(const StampedFrame& a, const StampedFrame& b, const PairLimits& limits = {});
 
-/// Decodes the picture and places the camera by forward kinematics of its link at the frame's own joint state.
+/// Decodes the picture and places the camera by forward kinematics of its link at the frame's own joint state, and by
+/// the camera file's pose where that is given in this link (a calibrated mount).
 /// @returns kNotFound (camera or link unknown), kInvalidInput (damaged picture, bad camera file).  Thread-safe.
 Result<vision::Snapshot> makeSnapshot(const planning::Workcell& workcell, const StampedFrame& stamped);
 

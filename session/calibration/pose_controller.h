@@ -1,0 +1,138 @@
+#pragma once
+
+/// @file
+/// PoseController: finds where a camera, an aiming device or an object is, from known points clicked in pictures.
+
+#include <optional>
+#include <vector>
+
+#include <QObject>
+#include <QString>
+
+#include "calibration/pose/single_pose.h"
+#include "calibration/pose/solve_loop.h"
+#include "session/calibration/calibration_controller.h"
+#include "session/calibration/landmarks.h"
+#include "session/controllers/job_runner.h"
+#include "vision/sketch/pointer_event.h"
+
+namespace longarm::session {
+
+/// One click: this landmark is there in that picture.
+struct LandmarkPick {
+  Landmark landmark;
+  SnapshotId snapshot;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+
+/// What the solver made of them.
+struct PoseOutcome {
+  calibration::LoopResult result;
+  std::vector<std::size_t> pick;           ///< Of each observation of `result`: index in picks().
+};
+
+/// The loop of transforms is p_C = T_ext T_kin T_dev T_obj^-1 x.  T_ext: the camera in its link (one camera, all views).
+/// T_dev: the foot of the camera's pan-tilt in the robot's root.  T_obj: the pose of one object of the workcell.
+/// Solves off the GUI thread after every click.  GUI thread only.
+class PoseController final : public QObject {
+  Q_OBJECT
+
+ public:
+  using Unknown = calibration::LoopUnknown;
+
+  /// Everything is borrowed and outlives this.
+  PoseController(Document& document, CalibrationController& calibration, JobRunner& jobs, QObject* parent = nullptr);
+  ~PoseController() override;
+
+  void setCamera(const QString& camera);
+  const std::string& camera() const { return m_camera; }
+  void setUnknown(Unknown unknown);
+  Unknown unknown() const { return m_unknown; }
+  /// Of the workcell, for T_obj.
+  void setObject(const QString& object);
+  const std::string& object() const { return m_object; }
+
+  /// Those that can serve for what is unknown.
+  const std::vector<Landmark>& landmarks() const { return m_landmarks; }
+  void setLandmark(int index);             ///< The one a click will mean; -1: none.
+  int landmark() const { return m_landmark; }
+  /// Pictures of the camera with the robot's state, oldest first.
+  std::vector<SnapshotPtr> snapshots() const;
+  void setSnapshot(SnapshotId id);
+  SnapshotPtr snapshot() const;            ///< Null: none.
+
+  /// The chosen landmark is here; replaces an earlier click on it in this picture, and goes on to the landmark that
+  /// would help most.
+  void pick(const Eigen::Vector2d& pixel);
+  void remove(std::size_t pick);
+  void clear();
+  const std::vector<LandmarkPick>& picks() const { return m_picks; }
+
+  /// The operator's own guess, on top of what is in use: turn [rad] and shift [m] in the camera's (T_ext), the root's (T_dev)
+  /// or the object's parent frame.  A start for the search and what is drawn until there is a solution.
+  void setGuess(const Vector6d& increment);
+
+  const std::optional<PoseOutcome>& outcome() const { return m_outcome; }
+  QString why() const { return m_why; }    ///< Why there is no outcome, with what to do.
+  bool solving() const { return m_solving; }
+  /// The unknown as it stands: solved, else guessed, as it stands in the loop (T_obj: its inverse).
+  Pose estimate() const;
+  /// The picture's camera with the estimate; empty without a picture.
+  std::optional<vision::View> viewNow() const;
+  /// Landmarks, edges, clicks and 10-fold misses over the shown picture.
+  vision::Overlay overlay() const;
+  /// Index of the landmark whose place in the picture lies within `radius_px` of a pixel; -1: none.
+  int landmarkNear(const Eigen::Vector2d& pixel, double radius_px) const;
+  /// Clicked minus projected with the calibration in use, of clicks in pictures taken since it is [px].
+  std::vector<Eigen::Vector2d> offsetsInUse() const;
+  /// rms of all clicks with the calibration in use [px]; empty without clicks.
+  std::optional<double> missInUse() const;
+
+  QString whyNotApply() const;
+  /// T_ext: what to give to CalibrationController::apply.  @pre whyNotApply() is empty
+  CameraChange change() const;
+  /// T_obj: the object's solved pose in its parent.
+  Pose solvedObjectPose() const;
+  /// The solved transform in numbers as files write them.
+  QString resultText() const;
+
+ Q_SIGNALS:
+  void changed();                          ///< Clicks, outcome, choices.
+  void landmarksChanged();
+  void snapshotsChanged();
+
+ private:
+  void documentChanged(const Change& change);
+  void refreshLandmarks();
+  void restart();
+  void solve();
+  void advise();
+  Pose inUse() const;
+  /// Everything of the loop but the unknown, for one picture.  Empty: a link is missing.
+  std::optional<calibration::LoopView> loopView(const vision::Snapshot& snapshot) const;
+  /// Landmark in the frame that the loop begins with.
+  std::optional<Eigen::Vector3d> loopPoint(const Landmark& landmark, const vision::Snapshot& snapshot) const;
+  std::optional<Eigen::Vector2d> projected(const Landmark& landmark, const vision::Snapshot& snapshot, const Pose& unknown) const;
+  std::optional<calibration::PoseObservation> observation(const Landmark& landmark, const vision::Snapshot& snapshot) const;
+  Eigen::VectorXd configuration(const vision::Snapshot& snapshot) const;
+  const planning::CameraSpec* spec() const;
+  const planning::WorldObject* objectSpec() const;
+  bool hangsOnPanTilt(const std::string& link) const;
+
+  Document& m_document;
+  CalibrationController& m_calibration;
+  JobRunner& m_jobs;
+  int m_observer = 0;
+  std::string m_camera, m_object;
+  Unknown m_unknown = Unknown::kExt;
+  std::vector<Landmark> m_landmarks;
+  int m_landmark = -1;
+  SnapshotId m_snapshot;
+  std::vector<LandmarkPick> m_picks;
+  Vector6d m_guess = Vector6d::Zero();
+  std::optional<PoseOutcome> m_outcome;
+  QString m_why;
+  bool m_solving = false, m_stale = false;
+};
+
+}  // namespace longarm::session
