@@ -29,6 +29,8 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kToolPlane, "Sketch", "Pla&ne", "tool-plane", "W", "Mark three corners of a flat face in both pictures", true},
       {I::kToolTriad, "Sketch", "&Triad (box)", "tool-triad", "X", "Mark a box's corner and the ends of its three edges in both pictures", true},
 
+      {I::kTaskTarget, "View", "Tar&get", "", "F5", "Take pictures, mark what matters, plan and play"},
+      {I::kTaskCalibrate, "View", "&Calibrate", "", "F7", "Find out lenses and places of the cameras"},
       {I::kLiveBoth, "View", "&Live pictures", "", "V", "Switch both panes between live pictures and snapshots", true},
       {I::kFitPictures, "View", "&Fit pictures", "view-fit", "Ctrl+0", "Show both pictures whole"},
       {I::kFullSize, "View", "Pictures at &100 %", "view-full-size", "Ctrl+1", "One picture pixel per screen pixel in both panes"},

@@ -18,6 +18,7 @@ enum class ActionId {
   kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kQuit,
   kUndo, kRedo, kDelete, kRename, kDuplicate, kHide, kLock, kSelectAll, kCancel,
   kToolSelect, kToolPoint, kToolLine, kToolPlane, kToolTriad,
+  kTaskTarget, kTaskCalibrate,
   kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,
   kMoreOpaque, kLessOpaque, kTheme, kResetLayout,

@@ -34,7 +34,7 @@ LivePictures::LivePictures(RobotSession& robot, session::JobRunner& jobs, QObjec
 
 void LivePictures::setShown(vision::PaneSide side, const QString& camera) { m_shown[static_cast<int>(side)] = camera; }
 
-bool LivePictures::isShown(const QString& camera) const { return m_shown[0] == camera || m_shown[1] == camera; }
+bool LivePictures::isShown(const QString& camera) const { return m_shown[0] == camera || m_shown[1] == camera || m_watched == camera; }
 
 const cv::Mat& LivePictures::picture(const QString& camera) const {
   static const cv::Mat none;
@@ -50,6 +50,11 @@ QImage LivePictures::thumbnail(const QString& camera) const {
 std::optional<vision::View> LivePictures::view(const QString& camera) const {
   const auto found = m_entries.find(camera);
   return found == m_entries.end() ? std::nullopt : found->second.view;
+}
+
+double LivePictures::stamp_s(const QString& camera) const {
+  const auto found = m_entries.find(camera);
+  return found == m_entries.end() ? 0 : found->second.decoded_s;
 }
 
 std::optional<double> LivePictures::age(const QString& camera) const {
@@ -98,7 +103,7 @@ void LivePictures::take(const QString& camera, const hardware::Frame& frame, con
     if (!state && newest) state = *newest;
     entry.view.reset();
     if (state) {
-      auto view = session::cameraView(runtime->workcell(), frame.camera, *state);
+      auto view = session::cameraView(m_workcell ? *m_workcell : runtime->workcell(), frame.camera, *state);
       if (view) entry.view = std::move(*view);
     }
   }

@@ -29,11 +29,17 @@ class LivePictures final : public QObject {
 
   /// The camera that a pane shows live; empty: none.
   void setShown(vision::PaneSide side, const QString& camera);
+  /// One more camera that is looked at, by a calibration; empty: none.
+  void setWatched(const QString& camera) { m_watched = camera; }
+  /// The cameras as they are calibrated now.
+  void setWorkcell(std::shared_ptr<const planning::Workcell> workcell) { m_workcell = std::move(workcell); }
 
   const cv::Mat& picture(const QString& camera) const;          ///< Empty before the first.
   QImage thumbnail(const QString& camera) const;                ///< Null before the first.
   /// Where the camera was at that picture; empty while unknown.
   std::optional<vision::View> view(const QString& camera) const;
+  /// When that picture was exposed, on the robot's clock [s].
+  double stamp_s(const QString& camera) const;
   /// Age of the newest frame that arrived [s]; empty: none ever.
   std::optional<double> age(const QString& camera) const;
 
@@ -64,6 +70,8 @@ class LivePictures final : public QObject {
   RobotSession& m_robot;
   session::JobRunner& m_jobs;
   std::array<QString, 2> m_shown;
+  QString m_watched;
+  std::shared_ptr<const planning::Workcell> m_workcell;
   std::map<QString, Entry> m_entries;
   unsigned m_polls = 0;
 };

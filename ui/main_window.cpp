@@ -10,6 +10,7 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
+#include <QStackedWidget>
 #include <QVBoxLayout>
 
 #include "ui/macro_memory.h"
@@ -67,6 +68,8 @@ void MainWindow::makePanels() {
   m_cameras = new CamerasPanel(m_bench, m_appearance);
   m_strip = new StatusStrip(m_bench, *m_actions, m_appearance);
   m_notices = new NoticeBar;
+  m_tasks = new TaskTabs(*m_actions);
+  m_calibrate = new CalibratePage(m_bench, m_appearance);
 }
 
 void MainWindow::assemble() {
@@ -97,9 +100,12 @@ void MainWindow::assemble() {
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
   auto* column = m_frame->content();
-  column->addWidget(m_strip);
+  m_pages = new QStackedWidget;
+  m_pages->addWidget(m_docks);
+  m_pages->addWidget(m_calibrate);
+  column->addWidget(makeTopBar());
   column->addWidget(m_notices);
-  column->addWidget(m_docks, 1);
+  column->addWidget(m_pages, 1);
   column->addWidget(makeBottomBar());
   m_layout = std::make_unique<WindowLayout>(*this, *m_docks, std::vector<QSplitter*>{m_middle}, m_settings);
 }
@@ -110,6 +116,27 @@ void MainWindow::addDock(const QString& name, const QString& title, QWidget* pan
   dock->setWidget(panel);
   dock->setFeatures(QDockWidget::DockWidgetMovable | QDockWidget::DockWidgetFloatable | QDockWidget::DockWidgetClosable);
   m_docks->addDockWidget(area, dock);
+}
+
+// The tabs share the strip's line: pictures need the height.
+QWidget* MainWindow::makeTopBar() {
+  auto* bar = new QFrame;
+  bar->setObjectName(QStringLiteral("strip"));
+  auto* row = new QHBoxLayout(bar);
+  row->setContentsMargins(4, 2, 0, 0);
+  row->setSpacing(2);
+  row->addWidget(m_tasks);
+  row->addWidget(m_strip, 1);
+  return bar;
+}
+
+// Keys of what is not seen are silent: Del must not delete a feature behind another page.
+void MainWindow::showTask(Task task) {
+  m_pages->setCurrentIndex(static_cast<int>(task));
+  for (const char* menu : {"Edit", "Sketch"}) {
+    const auto found = m_menus.find(tr(menu));
+    if (found != m_menus.end()) found->second->menuAction()->setEnabled(task == Task::kTarget);
+  }
 }
 
 // STOP is no dock: nothing can cover it or take it away.
@@ -125,7 +152,7 @@ QWidget* MainWindow::makeBottomBar() {
 }
 
 void MainWindow::makeMenus() {
-  std::map<QString, QMenu*> menus;
+  std::map<QString, QMenu*>& menus = m_menus;
   for (const auto& spec : actionTable()) {
     const QString name = tr(spec.menu);
     if (menus.count(name) == 0) {
@@ -137,6 +164,7 @@ void MainWindow::makeMenus() {
       case ActionId::kQuit:
       case ActionId::kDelete:
       case ActionId::kSelectAll:
+      case ActionId::kLiveBoth:
       case ActionId::kSceneFit:
       case ActionId::kTheme:
       case ActionId::kReplan:
@@ -154,6 +182,7 @@ void MainWindow::makeMenus() {
 
 void MainWindow::connectPanels() {
   connect(m_stop_keys, &StopKeys::stopPressed, this, [this] { m_bench.robot().stop("operator", "the stop key was pressed"); });
+  connect(m_tasks, &TaskTabs::taskChanged, this, &MainWindow::showTask);
   connect(m_cameras, &CamerasPanel::chosen, this, [this](const QString& camera, PaneSide side) { m_pictures->pane(side)->showLive(camera); });
   for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
     SnapshotPane* pane = m_pictures->pane(side);

@@ -9,6 +9,7 @@
 #include <QSettings>
 
 #include "ui/actions.h"
+#include "ui/calibrate_page.h"
 #include "ui/cameras_panel.h"
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
@@ -23,9 +24,12 @@
 #include "ui/status_strip.h"
 #include "ui/stop_keys.h"
 #include "ui/stop_panel.h"
+#include "ui/task_tabs.h"
 #include "ui/window_layout.h"
 #include "ui/workbench.h"
 #include "widgets/mode_frame.h"
+
+class QStackedWidget;
 
 namespace longarm::ui {
 
@@ -50,6 +54,8 @@ class MainWindow final : public QMainWindow {
   CamerasPanel* cameras() const { return m_cameras; }
   StatusStrip* strip() const { return m_strip; }
   NoticeBar* notices() const { return m_notices; }
+  TaskTabs* tasks() const { return m_tasks; }
+  CalibratePage* calibrate() const { return m_calibrate; }
   FileActions* files() const { return m_files; }
   WindowLayout& layout() { return *m_layout; }
 
@@ -66,7 +72,9 @@ class MainWindow final : public QMainWindow {
   void assemble();
   void addDock(const QString& name, const QString& title, QWidget* panel, Qt::DockWidgetArea area);
   QWidget* makeBottomBar();
+  QWidget* makeTopBar();
   void makeMenus();
+  void showTask(Task task);
   void connectPanels();
   void bindWindowActions();
   void applyTheme();
@@ -84,7 +92,11 @@ class MainWindow final : public QMainWindow {
   StopKeys* m_stop_keys;
   FileActions* m_files;
   widgets::ModeFrame* m_frame;
+  TaskTabs* m_tasks;
+  QStackedWidget* m_pages;
   QMainWindow* m_docks;
+  CalibratePage* m_calibrate;
+  std::map<QString, QMenu*> m_menus;
   QSplitter* m_middle;
   PicturesArea* m_pictures;
   ScenePanel* m_scene;

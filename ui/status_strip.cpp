@@ -60,6 +60,8 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   row->addWidget(m_owner);
   row->addWidget(m_arm);
   row->addWidget(m_video);
+  m_cameras = new StatusLamp(this);
+  row->addWidget(m_cameras);
   m_message = new ElidedLabel(this);
   m_message->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
   m_message->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
@@ -81,6 +83,7 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, [this] { showMode(); showLink(); showArm(); });
   connect(&m_bench.robot(), &RobotSession::polled, this, &StatusStrip::showArm);
   connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &StatusStrip::showVideo);
+  connect(&m_bench.health(), &session::HealthController::changed, this, &StatusStrip::showCameras);
   connect(&m_bench.plans(), &session::PlanController::stateChanged, this, &StatusStrip::showProgress);
   connect(&m_bench.plans(), &session::PlanController::progressChanged, this, &StatusStrip::showProgress);
   connect(&m_appearance, &Appearance::changed, this, &StatusStrip::applyTheme);
@@ -89,13 +92,14 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   showLink();
   showArm();
   showVideo();
+  showCameras();
   showProgress();
 }
 
 QString StatusStrip::message() const { return m_message->fullText(); }
 
 void StatusStrip::applyTheme() {
-  for (auto* lamp : {m_link, m_owner, m_arm, m_video}) lamp->setTheme(m_appearance.theme());
+  for (auto* lamp : {m_link, m_owner, m_arm, m_video, m_cameras}) lamp->setTheme(m_appearance.theme());
 }
 
 void StatusStrip::showMode() {
@@ -152,6 +156,19 @@ void StatusStrip::showVideo() {
   const auto level = *oldest < 0.25 ? StatusLamp::Level::kOk : *oldest < 1 ? StatusLamp::Level::kDegraded : StatusLamp::Level::kLost;
   m_video->setStatus(level, tr("video %1 s").arg(QString::number(std::min(*oldest, 999.0), 'f', *oldest < 10 ? 1 : 0)),
                      tr("Age of the older of the panes' live pictures, from exposure"));
+}
+
+// By exception: nothing is said while no camera looks knocked.
+void StatusStrip::showCameras() {
+  using calibration::HealthLevel;
+  const QString camera = m_bench.health().worstCamera();
+  m_cameras->setVisible(!camera.isEmpty());
+  if (camera.isEmpty()) return;
+  const auto health = m_bench.health().of(camera.toStdString());
+  const bool knocked = health.level == HealthLevel::kKnocked;
+  m_cameras->setStatus(knocked ? StatusLamp::Level::kFault : StatusLamp::Level::kDegraded,
+                       (knocked ? tr("%1 knocked? %2 px off") : tr("%1 doubtful, %2 px")).arg(camera, QString::number(health.off_px, 'f', 1)),
+                       QString::fromStdString(health.why));
 }
 
 void StatusStrip::showProgress() {

@@ -34,6 +34,7 @@ class StatusStrip final : public QFrame {
   void showLink();
   void showArm();
   void showVideo();
+  void showCameras();
   void showProgress();
   void showMessage(const QString& sentence);
 
@@ -41,7 +42,7 @@ class StatusStrip final : public QFrame {
   Appearance& m_appearance;
   QLabel *m_mode, *m_planning;
   ElidedLabel* m_message;
-  widgets::StatusLamp *m_link, *m_arm, *m_owner, *m_video;
+  widgets::StatusLamp *m_link, *m_arm, *m_owner, *m_video, *m_cameras;
   QProgressBar* m_progress;
   QToolButton *m_cancel, *m_restart;
   QTimer m_forget;

@@ -2,16 +2,29 @@
 
 #include <utility>
 
+#include <QDir>
+
 #include "planning/world/workcell.h"
 
 namespace longarm::ui {
 
 using vision::PaneSide;
 
+namespace {
+
+// Beside the autosave where that has a place of its own.
+QString libraryFolder(const QString& autosave_folder) {
+  return autosave_folder.isEmpty() ? QString() : QDir::cleanPath(autosave_folder + QStringLiteral("/../calibrations"));
+}
+
+}  // namespace
+
 Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
       m_targeting(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
-      m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder) {
+      m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder),
+      m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
+      m_lens(m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
   // A robot that renders its pictures beside a compiler, or sends them over a poor radio, needs seconds for one.
   session::SnapshotTiming timing;
   timing.timeout_s = 10;
@@ -40,6 +53,26 @@ void Workbench::connectParts() {
   connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
   connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
   connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
+  connectCalibration();
+}
+
+void Workbench::connectCalibration() {
+  connect(&m_calibration, &session::CalibrationController::applied, this, [this](const QString& camera) {
+    useCalibrations();
+    say(tr("Camera %1 uses another calibration now; snapshots keep the one they were taken with.").arg(camera));
+  });
+  connect(&m_calibration, &session::CalibrationController::objectPlaced, this, [this](const QString& object) {
+    useCalibrations();
+    say(tr("Object %1 stands where it was calibrated to, until the window is closed.").arg(object));
+  });
+  connect(&m_calibration.intrinsics(), &session::IntrinsicsController::failed, this, &Workbench::said);
+  connect(&m_lens, &session::LensController::failed, this, &Workbench::said);
+  connect(&m_fixture, &session::FixtureController::failed, this, &Workbench::said);
+  connect(&m_zoom, &session::ZoomController::failed, this, &Workbench::said);
+  connect(&m_health, &session::HealthController::changed, this, [this] {
+    const QString camera = m_health.worstCamera();
+    if (!camera.isEmpty()) say(QString::fromStdString(m_health.of(camera.toStdString()).why));
+  });
 }
 
 void Workbench::openRobot(const RobotChoice& choice) {
@@ -67,10 +100,25 @@ void Workbench::openRobot(const RobotChoice& choice) {
 }
 
 void Workbench::setWorkcell(std::shared_ptr<const planning::Workcell> workcell) {
-  m_document.setWorkcell(workcell);
-  m_aim.setWorkcell(std::move(workcell));
+  m_calibration.setWorkcell(std::move(workcell));
+  useCalibrations();
   chooseCameras();
+  for (const auto& warning : m_calibration.library().warnings()) say(QString::fromStdString(warning));
   for (const auto& warning : m_document.workcell()->warnings) say(QString::fromStdString(warning));
+}
+
+void Workbench::useCalibrations() {
+  const auto workcell = m_calibration.workcellInUse();
+  m_document.setWorkcell(workcell);
+  m_live.setWorkcell(workcell);
+  m_aim.setWorkcell(workcell);
+}
+
+QString Workbench::whyNotCalibrate() const {
+  if (!m_document.workcell()) return tr("There is no workcell whose cameras could use it; save it to a file.");
+  if (m_robot.status().moving) return tr("The arm is moving: pause or stop it first.");
+  if (m_robot.armed()) return tr("The robot is armed: press STOP before a camera is changed under a motion.");
+  return {};
 }
 
 void Workbench::chooseCameras() {
@@ -132,8 +180,17 @@ QString Workbench::whyNotPlan() const {
   return m_robot.whyNotReady();
 }
 
+// A motion to something that a knocked camera measured is refused; canned motions need no camera.
+QString Workbench::whyNotTrust(const QString& macro) const {
+  for (const auto& row : m_plans.macros()) {
+    if (row.name == macro && row.takes) return m_health.whyNotTrust(m_document.selection().primary);
+  }
+  return {};
+}
+
 void Workbench::plan(const QString& macro) {
   if (const QString why = whyNotPlan(); !why.isEmpty()) return say(why);
+  if (const QString why = whyNotTrust(macro); !why.isEmpty()) return say(why);
   const Status started = m_plans.plan(macro);
   if (!started) say(QString::fromStdString(started.error().message));
 }

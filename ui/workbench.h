@@ -9,6 +9,12 @@
 #include <QObject>
 #include <QString>
 
+#include "session/calibration/calibration_controller.h"
+#include "session/calibration/fixture_controller.h"
+#include "session/calibration/health_controller.h"
+#include "session/calibration/lens_controller.h"
+#include "session/calibration/pose_controller.h"
+#include "session/calibration/zoom_controller.h"
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
 #include "session/controllers/jog_controller.h"
@@ -49,10 +55,19 @@ class Workbench final : public QObject {
   session::AimController& aim() { return m_aim; }
   session::JogController& jog() { return m_jog; }
   session::Autosave& autosave() { return m_autosave; }
+  session::CalibrationController& calibration() { return m_calibration; }
+  session::PoseController& pose() { return m_pose; }
+  session::LensController& lens() { return m_lens; }
+  session::FixtureController& fixture() { return m_fixture; }
+  session::ZoomController& zoom() { return m_zoom; }
+  session::HealthController& health() { return m_health; }
 
   /// Reads the workcell and starts its robot, both off the GUI thread.
   void openRobot(const RobotChoice& choice);
   void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
+
+  /// Why no calibration can be put to use now; empty: it can.
+  QString whyNotCalibrate() const;
 
   /// The camera a pane shows when it is live, and that takePair() takes for it; the stereo head's at first.
   QString paneCamera(vision::PaneSide side) const { return m_pane_cameras[static_cast<int>(side)]; }
@@ -76,6 +91,9 @@ class Workbench final : public QObject {
   void connectParts();
   void chooseCameras();
   void favourPair();
+  void connectCalibration();
+  void useCalibrations();
+  QString whyNotTrust(const QString& macro) const;
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -89,6 +107,12 @@ class Workbench final : public QObject {
   session::AimController m_aim;
   session::JogController m_jog;
   session::Autosave m_autosave;
+  session::CalibrationController m_calibration;
+  session::PoseController m_pose;
+  session::LensController m_lens;
+  session::FixtureController m_fixture;
+  session::ZoomController m_zoom;
+  session::HealthController m_health;
   std::array<QString, 2> m_pane_cameras;
 };
 

@@ -1,0 +1,263 @@
+#include "ui/calibrate_library_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QDateTime>
+#include <QDoubleSpinBox>
+#include <QFile>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSplitter>
+#include <QTableWidget>
+#include <QVBoxLayout>
+
+#include "calibration/intrinsics/compare_cameras.h"
+#include "ui/calibrate_parts.h"
+
+namespace longarm::ui {
+
+using calibration::HealthLevel;
+using vision::OverlayRole;
+
+namespace {
+
+constexpr double kSame_px = 1e-6;
+constexpr double kDegPerRad = 57.29577951308232;
+
+QString wordOf(HealthLevel level) {
+  switch (level) {
+    case HealthLevel::kUnknown: return QObject::tr("not known yet");
+    case HealthLevel::kGood: return QObject::tr("good");
+    case HealthLevel::kDoubtful: return QObject::tr("doubtful");
+    case HealthLevel::kKnocked: return QObject::tr("KNOCKED?");
+  }
+  return {};
+}
+
+QString ageText(double days) {
+  if (days < 0) return QStringLiteral("-");
+  return days < 1 ? QObject::tr("%1 h").arg(24 * days, 0, 'f', 0) : QObject::tr("%1 d").arg(days, 0, 'f', 0);
+}
+
+}  // namespace
+
+CalibrateLibraryPanel::CalibrateLibraryPanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(4);
+  row->addWidget(buildTables(appearance), 3);
+  row->addWidget(buildDifference(appearance), 2);
+  bind();
+  refresh();
+}
+
+QWidget* CalibrateLibraryPanel::buildTables(Appearance& appearance) {
+  auto* frame = new QFrame(this);
+  frame->setObjectName(QStringLiteral("panel"));
+  auto* column = new QVBoxLayout(frame);
+  auto* head = new QLabel(tr("Cameras"), frame);
+  head->setObjectName(QStringLiteral("title"));
+  column->addWidget(head);
+  m_cameras = plainTable({tr("Camera"), tr("In use"), tr("Age"), tr("Rays \u00b1 px"), tr("Off px"), tr("Health")}, frame);
+  column->addWidget(m_cameras, 1);
+  m_health = wordLabel(frame);
+  m_health->setMinimumHeight(34);
+  column->addWidget(m_health);
+  auto* line = new QHBoxLayout;
+  m_repose = new QPushButton(tr("Calibrate its pose..."), frame);
+  line->addWidget(m_repose);
+  line->addStretch(1);
+  column->addLayout(line);
+  auto* title = new QLabel(tr("Calibrations of this camera"), frame);
+  title->setObjectName(QStringLiteral("title"));
+  column->addWidget(title);
+  m_records = plainTable({tr("Made"), tr("Kind"), tr("Points"), tr("rms px"), tr("Rays \u00b1 px"), tr("Note")}, frame);
+  column->addWidget(m_records, 1);
+  auto* row = new QHBoxLayout;
+  m_use = holdButton(tr("Hold to use this one"), appearance, frame);
+  m_export = new QPushButton(tr("Export..."), frame);
+  row->addWidget(m_use);
+  row->addWidget(m_export);
+  row->addStretch(1);
+  column->addLayout(row);
+  return frame;
+}
+
+QWidget* CalibrateLibraryPanel::buildDifference(Appearance& appearance) {
+  auto* frame = new QFrame(this);
+  frame->setObjectName(QStringLiteral("panel"));
+  auto* column = new QVBoxLayout(frame);
+  auto* row = new QHBoxLayout;
+  auto* title = new QLabel(tr("Against the one in use, at"), frame);
+  m_depth = new QDoubleSpinBox(frame);
+  m_depth->setRange(0.05, 100);
+  m_depth->setValue(1);
+  m_depth->setSuffix(QStringLiteral(" m"));
+  m_depth->setToolTip(tr("Working depth of the millimetres"));
+  row->addWidget(title);
+  row->addWidget(m_depth);
+  row->addStretch(1);
+  column->addLayout(row);
+  m_canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
+  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
+  style();
+  connect(&appearance, &Appearance::changed, this, style);
+  column->addWidget(m_canvas, 1);
+  m_difference = wordLabel(frame);
+  m_difference->setMinimumHeight(64);
+  column->addWidget(m_difference);
+  return frame;
+}
+
+void CalibrateLibraryPanel::bind() {
+  connect(m_cameras, &QTableWidget::itemSelectionChanged, this, &CalibrateLibraryPanel::refreshRecords);
+  connect(m_records, &QTableWidget::itemSelectionChanged, this, &CalibrateLibraryPanel::refreshDifference);
+  connect(m_depth, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &CalibrateLibraryPanel::refreshDifference);
+  connect(m_use, &widgets::HoldButton::held, this, &CalibrateLibraryPanel::use);
+  connect(m_repose, &QPushButton::clicked, this, [this] { Q_EMIT poseWanted(chosenCamera()); });
+  connect(m_export, &QPushButton::clicked, this, [this] {
+    const auto record = m_bench.calibration().library().find(chosenRecord().toStdString());
+    if (!record) return;
+    askWhereToSave(this, tr("Export the camera"), QString::fromStdString(record->camera) + QStringLiteral(".yaml"),
+                   {tr("ROS camera file (*.yaml)"), tr("OpenCV YAML (*.yml)"), tr("OpenCV XML (*.xml)")}, [this, from = record->file](const QString& to) {
+                     const auto file = vision::readCameraFile(from);
+                     const Status written = file ? vision::writeCameraFile(to.toStdString(), *file) : Status(file.error());
+                     m_bench.say(written ? tr("Camera exported to %1").arg(to) : QString::fromStdString(written.error().message));
+                   });
+  });
+  connect(&m_bench.calibration(), &session::CalibrationController::applied, this, &CalibrateLibraryPanel::refresh);
+  connect(&m_bench.health(), &session::HealthController::changed, this, [this] {
+    if (isVisible()) refreshCameras();
+  });
+  connect(&m_bench.robot(), &RobotSession::stopChanged, this, &CalibrateLibraryPanel::refreshDifference);
+}
+
+QString CalibrateLibraryPanel::difference() const { return m_difference->text(); }
+
+void CalibrateLibraryPanel::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  refresh();
+}
+
+void CalibrateLibraryPanel::refresh() {
+  refreshCameras();
+  refreshRecords();
+}
+
+void CalibrateLibraryPanel::refreshCameras() {
+  const auto& workcell = m_bench.document().workcell();
+  const QString chosen = chosenCamera();
+  const QSignalBlocker quiet(m_cameras);
+  m_cameras->setRowCount(workcell ? static_cast<int>(workcell->cameras.size()) : 0);
+  for (int row = 0; row < m_cameras->rowCount(); ++row) {
+    const std::string& name = workcell->cameras[static_cast<std::size_t>(row)].name;
+    const auto record = m_bench.calibration().recordInUse(name);
+    const auto health = m_bench.health().of(name);
+    const auto file = m_bench.calibration().fileInUse(name);
+    const auto sure = file ? session::meanUncertainty(*file) : std::nullopt;
+    setCell(m_cameras, row, 0, QString::fromStdString(name));
+    setCell(m_cameras, row, 1, record ? QString::fromStdString(record->kind) : tr("workcell's file"));
+    setCell(m_cameras, row, 2, ageText(m_bench.health().ageDays(name)));
+    setCell(m_cameras, row, 3, sure ? QString::number(*sure, 'f', 3) : tr("not stated"));
+    setCell(m_cameras, row, 4, health.samples > 0 ? QString::number(health.off_px, 'f', 1) : QStringLiteral("-"));
+    setCell(m_cameras, row, 5, wordOf(health.level));
+    if (QString::fromStdString(name) == chosen) m_cameras->selectRow(row);
+  }
+  if (m_cameras->rowCount() > 0 && !m_cameras->selectionModel()->hasSelection()) m_cameras->selectRow(0);
+  const auto health = m_bench.health().of(chosenCamera().toStdString());
+  const auto camera = m_bench.calibration().fileInUse(chosenCamera().toStdString());
+  QString text = QString::fromStdString(health.why);
+  if (!text.isEmpty() && camera) text += tr(" That is %1 mm at 1 m.").arg(1000 * health.off_px / camera->camera.fx, 0, 'f', 1);
+  if (text.isEmpty()) text = tr("Picks placed off their curve (Ctrl), and corners clicked under Pose, tell whether a camera was knocked.");
+  m_health->setText(text);
+}
+
+QString CalibrateLibraryPanel::chosenCamera() const {
+  const auto* item = m_cameras->currentRow() >= 0 ? m_cameras->item(m_cameras->currentRow(), 0) : nullptr;
+  return item != nullptr ? item->text() : QString();
+}
+
+QString CalibrateLibraryPanel::chosenRecord() const {
+  const auto* item = m_records->currentRow() >= 0 ? m_records->item(m_records->currentRow(), 0) : nullptr;
+  return item != nullptr ? item->data(Qt::UserRole).toString() : QString();
+}
+
+void CalibrateLibraryPanel::refreshRecords() {
+  const auto& plain = m_bench.calibration().plainWorkcell();
+  const QString camera = chosenCamera();
+  const auto records = plain && !camera.isEmpty() ? m_bench.calibration().library().records(plain->name, camera.toStdString()) : std::vector<session::CalibrationRecord>{};
+  const auto in_use = m_bench.calibration().recordInUse(camera.toStdString());
+  {
+    const QSignalBlocker quiet(m_records);
+    m_records->setRowCount(static_cast<int>(records.size()) + (camera.isEmpty() ? 0 : 1));
+    for (int row = 0; row < static_cast<int>(records.size()); ++row) {
+      const auto& record = records[static_cast<std::size_t>(row)];
+      const QString made = QDateTime::fromMSecsSinceEpoch(static_cast<qint64>(1000 * record.wall_time_s)).toString(QStringLiteral("yyyy-MM-dd HH:mm"));
+      const bool used = in_use && in_use->id == record.id;
+      setCell(m_records, row, 0, made + (used ? tr(" (in use)") : QString()));
+      m_records->item(row, 0)->setData(Qt::UserRole, QString::fromStdString(record.id));
+      setCell(m_records, row, 1, QString::fromStdString(record.kind));
+      setCell(m_records, row, 2, QString::number(record.observations));
+      setCell(m_records, row, 3, QString::number(record.rms_px, 'f', 3));
+      setCell(m_records, row, 4, record.uncertainty_px < 0 ? QStringLiteral("-") : QString::number(record.uncertainty_px, 'f', 3));
+      setCell(m_records, row, 5, QString::fromStdString(record.note));
+    }
+    if (!camera.isEmpty()) {
+      const int last = static_cast<int>(records.size());
+      setCell(m_records, last, 0, tr("workcell's own file") + (in_use ? QString() : tr(" (in use)")));
+      m_records->item(last, 0)->setData(Qt::UserRole, QString());
+      for (int column = 1; column < 6; ++column) setCell(m_records, last, column, QString());
+    }
+    if (m_records->rowCount() > 0) m_records->selectRow(0);
+  }
+  setWhyNot(m_repose, camera.isEmpty() ? tr("no camera is chosen.") : QString(), tr("Click known corners in a picture and put the camera right: two minutes"));
+  refreshDifference();
+}
+
+void CalibrateLibraryPanel::refreshDifference() {
+  const QString camera = chosenCamera();
+  const auto& plain = m_bench.calibration().plainWorkcell();
+  const auto* spec = plain ? plain->camera(camera.toStdString()) : nullptr;
+  const auto in_use = m_bench.calibration().recordInUse(camera.toStdString());
+  const QString id = chosenRecord();
+  const auto record = m_bench.calibration().library().find(id.toStdString());
+  QString why = m_records->currentRow() < 0 || spec == nullptr ? tr("no calibration is chosen.") : QString();
+  setWhyNot(m_export, why.isEmpty() && !record ? tr("the workcell's own file is a file already.") : why, tr("Write it as a camera file"));
+  if (why.isEmpty() && (in_use ? in_use->id : std::string()) == id.toStdString()) why = tr("it is in use.");
+  if (why.isEmpty()) why = m_bench.whyNotCalibrate();
+  setWhyNot(m_use, why, tr("Use this calibration from now on"));
+  if (spec == nullptr) return m_canvas->clearPicture(tr("No camera."));
+  const auto now = m_bench.calibration().fileInUse(camera.toStdString());
+  const auto then = vision::readCameraFile(record ? record->file : spec->calibration);
+  if (!now || !then) return m_canvas->clearPicture(QString::fromStdString(now ? then.error().message : now.error().message));
+  // The camera in its link, whether the file says so or not: what was mounted anew differs too.
+  auto a = *now, b = *then;
+  for (auto* file : {&a, &b}) {
+    if (!file->pose || file->pose->parent != spec->link) file->pose = PoseInParent{spec->link, Pose::Identity()};
+  }
+  const auto difference = calibration::compareCameras(a, b, m_depth->value(), true);
+  if (!difference) return m_canvas->clearPicture(QString::fromStdString(difference.error().message));
+  const cv::Mat& live = m_bench.live().picture(camera);
+  m_canvas->setPicture(live.empty() ? cv::Mat(a.camera.height, a.camera.width, CV_8U, cv::Scalar(70)) : live);
+  vision::Overlay overlay;
+  const double arrow = difference->max_px > 0 ? std::min(40.0, 0.06 * a.camera.width / difference->max_px) : 1;
+  for (const auto& place : difference->map) {
+    if (difference->max_px < kSame_px) break;
+    addLine(&overlay, OverlayRole::kMiss, {place.pixel, place.pixel + arrow * place.difference_px});
+  }
+  m_canvas->setOverlay(overlay);
+  m_difference->setText(tr("%1 px rms, %2 px at most: %3 mm at %4 m. A turn of %5\u00b0 explains it but for %6 px rms. Arrows are drawn %7-fold.")
+                            .arg(QString::number(difference->rms_px, 'f', 3), QString::number(difference->max_px, 'f', 3), QString::number(difference->max_mm, 'f', 2),
+                                 QString::number(m_depth->value(), 'f', 2), QString::number(kDegPerRad * difference->turn.norm(), 'f', 3),
+                                 QString::number(difference->after_turn_rms_px, 'f', 3), QString::number(arrow, 'f', 0)));
+}
+
+void CalibrateLibraryPanel::use() {
+  if (!m_use->isEnabled()) return;
+  const Status used = m_bench.calibration().use(chosenCamera().toStdString(), chosenRecord().toStdString());
+  if (!used) m_bench.say(QString::fromStdString(used.error().message));
+}
+
+}  // namespace longarm::ui

@@ -1,0 +1,58 @@
+#pragma once
+
+/// @file
+/// Small parts that the calibration panels share.
+
+#include <functional>
+
+#include <QString>
+#include <QStringList>
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "calibration/intrinsics/board_view.h"
+#include "calibration/intrinsics/lens_uncertainty.h"
+#include "planning/world/workcell.h"
+#include "ui/appearance.h"
+#include "vision/sketch/pointer_event.h"
+#include "widgets/hold_button.h"
+
+class QComboBox;
+class QLabel;
+class QProgressBar;
+class QTableWidget;
+class QVBoxLayout;
+class QWidget;
+
+namespace longarm::ui {
+
+/// A plain-text label over as many lines as it needs.
+QLabel* wordLabel(QWidget* parent, bool muted = false);
+/// A bar with its text on it, 0 ... 100.
+QProgressBar* fillBar(QWidget* parent);
+/// A table of rows without row numbers; the last column takes the room.
+QTableWidget* plainTable(const QStringList& columns, QWidget* parent);
+void setCell(QTableWidget* table, int row, int column, const QString& text);
+/// A button that is held for 0.8 s, in the colours in force.
+widgets::HoldButton* holdButton(const QString& text, Appearance& appearance, QWidget* parent);
+/// Enabled unless there is a reason, which becomes the tooltip.
+void setWhyNot(QWidget* widget, const QString& why, const QString& tip);
+/// The cameras of a workcell (may be null), the chosen one kept; `first` with empty data stands before them.
+void fillCameras(QComboBox* box, const planning::Workcell* workcell, const QString& first = {});
+/// Asks for files without stopping anything; `chosen` is called with the answer.
+void askForFiles(QWidget* parent, const QString& title, const QStringList& filters, bool many, const std::function<void(const QStringList&)>& chosen);
+void askWhereToSave(QWidget* parent, const QString& title, const QString& name, const QStringList& filters, const std::function<void(const QString&)>& chosen);
+
+/// @name Overlays
+/// @{
+void addMarker(vision::Overlay* overlay, vision::OverlayRole role, const Eigen::Vector2d& at);
+void addLine(vision::Overlay* overlay, vision::OverlayRole role, std::vector<Eigen::Vector2d> points);
+void addText(vision::Overlay* overlay, vision::OverlayRole role, const Eigen::Vector2d& at, const std::string& text);
+/// The corners of a board, in order of finding.
+void addBoard(vision::Overlay* overlay, vision::OverlayRole role, const calibration::BoardView& board);
+/// @}
+
+/// The picture (or grey where there is none) under the map of uncertainty: dark is certain, yellow the most uncertain.
+cv::Mat uncertaintyPicture(const cv::Mat& picture, const calibration::LensUncertainty& map, int width, int height);
+
+}  // namespace longarm::ui
