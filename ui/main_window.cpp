@@ -15,6 +15,7 @@
 
 #include "ui/macro_memory.h"
 #include "ui/shortcut_sheet.h"
+#include "ui/sketch_watch.h"
 
 namespace longarm::ui {
 
@@ -70,6 +71,7 @@ void MainWindow::makePanels() {
   m_notices = new NoticeBar;
   m_tasks = new TaskTabs(*m_actions);
   m_calibrate = new CalibratePage(m_bench, m_appearance);
+  new SketchWatch(m_bench, *m_notices, this);
 }
 
 void MainWindow::assemble() {

@@ -18,6 +18,7 @@
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
 #include "session/controllers/jog_controller.h"
+#include "session/controllers/match_controller.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/play_controller.h"
 #include "session/controllers/snapshot_controller.h"
@@ -49,6 +50,7 @@ class Workbench final : public QObject {
   RobotSession& robot() { return m_robot; }
   LivePictures& live() { return m_live; }
   session::TargetingController& targeting() { return m_targeting; }
+  session::MatchController& matches() { return m_matches; }
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
@@ -101,6 +103,7 @@ class Workbench final : public QObject {
   RobotSession m_robot;
   LivePictures m_live;
   session::TargetingController m_targeting;
+  session::MatchController m_matches;
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;

@@ -94,6 +94,16 @@ void paintPolyline(QPainter& painter, const OverlayShape& shape, const RoleStyle
   for (const auto& run : runs) painter.drawPolyline(run);
 }
 
+void paintArea(QPainter& painter, const OverlayShape& shape, const RoleStyle& style, const PixelToWidget& to_widget,
+               const OverlayLook& look) {
+  constexpr int kSeenThrough = 60;             // of 255
+  QColor fill = style.color;
+  fill.setAlpha(kSeenThrough);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(fill);
+  for (const auto& run : mapRuns(shape, to_widget, look.max_step_px)) painter.drawPolygon(run);
+}
+
 // A ring with a cross inside that leaves the pixel itself free to see.
 void paintHandle(QPainter& painter, const QPointF& at, const RoleStyle& style, double factor, bool active) {
   const double r = kHandleRadius * factor * (active ? 1.25 : 1);
@@ -124,6 +134,8 @@ void paintMarker(QPainter& painter, const OverlayShape& shape, const RoleStyle& 
     if (!at) continue;
     switch (shape.role) {
       case OverlayRole::kHandle:
+      case OverlayRole::kMatch:
+      case OverlayRole::kRival:
       case OverlayRole::kUnplaced: paintHandle(painter, *at, style, look.size_factor, false); break;
       case OverlayRole::kActiveHandle: paintHandle(painter, *at, style, look.size_factor, true); break;
       default: paintTick(painter, *at, style, look.size_factor); break;
@@ -190,6 +202,7 @@ void paintOverlay(QPainter& painter, const vision::Overlay& overlay, const Theme
     switch (shape.kind) {
       case OverlayShape::Kind::kPolyline: paintPolyline(painter, shape, style, to_widget, look); break;
       case OverlayShape::Kind::kMarker: paintMarker(painter, shape, style, to_widget, look); break;
+      case OverlayShape::Kind::kArea: paintArea(painter, shape, style, to_widget, look); break;
       case OverlayShape::Kind::kText:
         if (look.labels) paintText(painter, shape, style, to_widget, ticks);
         break;

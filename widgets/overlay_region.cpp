@@ -45,6 +45,17 @@ class Tiles {
     }
   }
 
+  // Tiles whose middle lies inside; those at the edge are the segments' business.
+  void markInside(const QPolygonF& area) {
+    const QRectF box = area.boundingRect();
+    for (int y = 0; y < m_rows; ++y) {
+      for (int x = 0; x < m_columns; ++x) {
+        const QPointF middle((x + 0.5) * kTile, (y + 0.5) * kTile);
+        if (box.contains(middle) && area.containsPoint(middle, Qt::OddEvenFill)) m_marked[index(x, y)] = 1;
+      }
+    }
+  }
+
   QRegion region() const {
     QRegion region;
     for (int y = 0; y < m_rows; ++y) {
@@ -97,11 +108,18 @@ struct Cover {
       case OverlayShape::Kind::kPolyline: addLine(shape, margin); break;
       case OverlayShape::Kind::kMarker: addMarkers(shape, margin); break;
       case OverlayShape::Kind::kText: addText(shape); break;
+      case OverlayShape::Kind::kArea: addArea(shape); break;
     }
   }
   void addLine(const OverlayShape& shape, double margin) {
     for (const auto& run : mapRuns(shape, to_widget, look.max_step_px)) {
       for (int i = 1; i < run.size(); ++i) tiles.markSegment(run[i - 1], run[i], margin);
+    }
+  }
+  void addArea(const OverlayShape& shape) {
+    for (const auto& run : mapRuns(shape, to_widget, look.max_step_px)) {
+      for (int i = 0; i < run.size(); ++i) tiles.markSegment(run[i], run[(i + 1) % run.size()], kEdge);
+      tiles.markInside(run);
     }
   }
   void addMarkers(const OverlayShape& shape, double margin) {

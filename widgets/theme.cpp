@@ -94,6 +94,9 @@ RoleStyle Theme::role(vision::OverlayRole role) const {
     case OverlayRole::kPathOccluded: return {QColor(0x5c, 0xf0, 0x8c), 1.4, true, true};
     case OverlayRole::kWarning: return {QColor(0xff, 0xb0, 0x00), 2.0, false, true};
     case OverlayRole::kLabel: return {QColor(0xff, 0xff, 0xff), 1.4, false, true};
+    case OverlayRole::kBand: return {QColor(0xff, 0xd2, 0x3f), 1.0, false, false};
+    case OverlayRole::kMatch: return {QColor(0x7d, 0xf2, 0xe0), 2.2, true, true};
+    case OverlayRole::kRival: return {QColor(0x7d, 0xf2, 0xe0), 1.2, true, true};
   }
   return {};
 }

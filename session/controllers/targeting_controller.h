@@ -41,6 +41,11 @@ class TargetingController final : public QObject {
   QString hint() const { return QString::fromStdString(m_tools.hint()); }
   std::optional<LiveMeasure> liveMeasure() const { return m_tools.liveMeasure(); }
 
+  std::vector<MatchWish> matchWishes() const { return m_tools.matchWishes(); }
+  std::vector<MatchHelp> matchHelp() const { return m_tools.matchHelp(); }
+  void setMatchHelp(std::vector<MatchHelp> help) { m_tools.setMatchHelp(std::move(help)); }
+  const std::shared_ptr<MatchPictures>& pictures() const { return m_tools.pictures(); }
+
   std::vector<FeatureRow> rows() const { return featureRows(m_document); }
   void select(FeatureId id);                       ///< Invalid: nothing.
   void select(const Selection& selection);

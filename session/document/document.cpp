@@ -98,7 +98,7 @@ Measurement Document::measure(const SketchItem& item) const {
       if (!picture->view.camera.containsPixel(pixel, 0.5)) {
         return {{}, offPicture(item, static_cast<int>(vertex), picture->view, pixel)};
       }
-      vertices[vertex].push_back({&picture->view, pixel, 0});
+      vertices[vertex].push_back({&picture->view, pixel, list[vertex]->sigma_px});
     }
   }
   for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex) {

@@ -91,6 +91,7 @@ const char* stateWord(PickState state) {
     case PickState::kFree: return "free";
     case PickState::kConstrained: return "constrained";
     case PickState::kReleased: return "released";
+    case PickState::kMatched: return "matched";
   }
   return "unplaced";
 }
@@ -102,6 +103,7 @@ json itemJson(const SketchItem& item) {
       if (!list[vertex]) continue;
       picks.push_back({{"snapshot", id.value}, {"vertex", vertex}, {"pixel", numbers(list[vertex]->pixel.data(), 2)},
                        {"state", stateWord(list[vertex]->state)}});
+      if (list[vertex]->sigma_px > 0) picks.back()["sigma_px"] = list[vertex]->sigma_px;
     }
   }
   json out = {{"id", item.id.value}, {"kind", vision::toString(item.kind)}, {"name", item.name},
@@ -239,10 +241,19 @@ SnapshotPtr readSnapshot(const json& value, const fs::path& folder, const std::s
 }
 
 PickState stateFrom(const std::string& word, const std::string& where) {
-  for (const PickState state : {PickState::kUnplaced, PickState::kFree, PickState::kConstrained, PickState::kReleased}) {
+  for (const PickState state : {PickState::kUnplaced, PickState::kFree, PickState::kConstrained, PickState::kReleased,
+                                PickState::kMatched}) {
     if (word == stateWord(state)) return state;
   }
-  fault(where, "is \"" + word + "\", expected unplaced, free, constrained or released");
+  fault(where, "is \"" + word + "\", expected unplaced, free, constrained, released or matched");
+}
+
+double readPickSigma(const json& pick, const std::string& where) {
+  const auto found = pick.find("sigma_px");
+  if (found == pick.end()) return 0;
+  const double sigma = number(*found, where + ".sigma_px");
+  if (!(sigma > 0)) fault(where + ".sigma_px", "is " + formatNumber(sigma) + ", expected > 0");
+  return sigma;
 }
 
 SketchItem readItem(const json& value, const std::set<std::uint64_t>& snapshots, const std::string& where) {
@@ -271,7 +282,7 @@ SketchItem readItem(const json& value, const std::set<std::uint64_t>& snapshots,
     }
     const auto pixel = vectorOf<Eigen::VectorXd>(need(entry, "pixel", here), 2, here + ".pixel");
     item.setPick({id}, static_cast<int>(vertex),
-                 {pixel, stateFrom(text(need(entry, "state", here), here + ".state"), here + ".state")});
+                 {pixel, stateFrom(text(need(entry, "state", here), here + ".state"), here + ".state"), readPickSigma(entry, here)});
   }
   return item;
 }

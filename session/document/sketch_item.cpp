@@ -25,7 +25,7 @@ void mix(std::uint64_t& hash, std::uint64_t value) {
 
 bool operator==(const SketchPick& a, const SketchPick& b) {
   return a.state == b.state && bitsOf(a.pixel.x()) == bitsOf(b.pixel.x()) &&
-         bitsOf(a.pixel.y()) == bitsOf(b.pixel.y());
+         bitsOf(a.pixel.y()) == bitsOf(b.pixel.y()) && bitsOf(a.sigma_px) == bitsOf(b.sigma_px);
 }
 
 bool operator==(const SketchItem& a, const SketchItem& b) {
@@ -78,6 +78,7 @@ std::uint64_t hashOf(const SketchItem& item) {
       if (!pick) continue;
       mix(hash, bitsOf(pick->pixel.x()));
       mix(hash, bitsOf(pick->pixel.y()));
+      mix(hash, bitsOf(pick->sigma_px));
     }
   }
   return hash;

@@ -21,13 +21,15 @@ enum class PickState {
   kUnplaced,     ///< A copy that nobody has dragged yet: drawn dashed, never measured.
   kFree,         ///< Placed freely: the first picture of its vertex.
   kConstrained,  ///< Slid along the epipolar curve of another pick; follows when that one moves.
-  kReleased      ///< Placed off the curve on purpose (Control held); stays when the other moves.
+  kReleased,     ///< Placed off the curve on purpose (Control held); stays when the other moves.
+  kMatched       ///< Taken from a suggested match; slides along the new curve when the other moves, as kConstrained.
 };
 
 /// One vertex in one picture.
 struct SketchPick {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< Raw pixel, (0, 0) = centre of the top-left one [px].
   PickState state = PickState::kUnplaced;
+  double sigma_px = 0;                              ///< Its own noise, 1 sigma [px]; 0: what the view says.
 
   bool placed() const { return state != PickState::kUnplaced; }
   friend bool operator==(const SketchPick& a, const SketchPick& b);

@@ -5,6 +5,7 @@
 
 #include "session/commands/sketch_commands.h"
 #include "session/tools/hit_test.h"
+#include "session/tools/match_help.h"
 
 namespace longarm::session {
 
@@ -179,8 +180,7 @@ ToolReply DrawTool::onClick(const Gesture& gesture) {
   const auto handle = active_here ? std::optional(m_active) : nextUnplaced(gesture.side);
   if (!handle) return consumed(false);
   m_active = *handle;
-  const PickEditor editor(*m_document, m_item, handle->snapshot, {handle->vertex});
-  return commit(editor.moveTo({gesture.pixel}, gesture.modifiers.control).item, "Place '" + m_item.name + "'");
+  return commit(placedAt(*m_document, m_item, *handle, gesture, pictures()).item, "Place '" + m_item.name + "'");
 }
 
 bool DrawTool::beginDrag(const Gesture& gesture) {
@@ -210,13 +210,13 @@ ToolReply DrawTool::onDrag(const Gesture& gesture) {
     m_state = State::kDragging;
   }
   if (m_state != State::kDragging) return {};
-  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  m_drag.move(gesture, pictures());
   return consumed();
 }
 
 ToolReply DrawTool::onDragEnd(const Gesture& gesture) {
   if (m_state != State::kDragging) return {};
-  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  m_drag.move(gesture, pictures());
   m_state = State::kPlacing;
   return commit(m_drag.finish(), "Place '" + m_item.name + "'");
 }
@@ -260,6 +260,29 @@ ToolReply DrawTool::onTab(bool backwards) {
   return consumed();
 }
 
+std::vector<MatchWish> DrawTool::matchWishes() const {
+  const SnapshotId panes[] = {m_document == nullptr ? SnapshotId{} : m_document->paneSnapshotId(PaneSide::kLeft),
+                              m_document == nullptr ? SnapshotId{} : m_document->paneSnapshotId(PaneSide::kRight)};
+  std::vector<MatchWish> wishes;
+  if (m_state == State::kDragging || !panes[0].valid() || !panes[1].valid() || panes[0] == panes[1]) return wishes;
+  for (int vertex = 0; vertex < vision::vertexCount(m_kind); ++vertex) {
+    for (const int from : {0, 1}) {
+      const SketchPick *here = m_item.pick(panes[from], vertex), *there = m_item.pick(panes[1 - from], vertex);
+      const bool wanted = here != nullptr && here->placed() && there != nullptr && !there->placed();
+      if (wanted) wishes.push_back({m_id, vertex, panes[from], panes[1 - from], here->pixel});
+    }
+  }
+  return wishes;
+}
+
+ToolReply DrawTool::acceptMatch(const MatchHelp& help) {
+  if (m_state != State::kPlacing || help.matches.empty()) return {};
+  SketchItem after = withMatch(m_item, help);
+  const PaneSide side = help.wish.to == m_document->paneSnapshotId(PaneSide::kLeft) ? PaneSide::kLeft : PaneSide::kRight;
+  m_active = {m_id, help.wish.vertex, help.wish.to, side};
+  return commit(std::move(after), "Accept match of '" + m_item.name + "'");
+}
+
 ToolReply DrawTool::onDelete() {
   ToolReply reply = consumed();
   reply.command = removeItems(*m_document, {m_id});
@@ -300,7 +323,7 @@ const SketchItem* DrawTool::draft() const {
 vision::Overlay DrawTool::preview(PaneSide side) const {
   const SketchItem* item = draft();
   if (item == nullptr) return {};
-  return handlePreview(*m_document, *item, m_drag.active() ? m_drag.handle() : m_active, side);
+  return m_drag.active() ? dragPreview(*m_document, m_drag, side) : handlePreview(*m_document, *item, m_active, side);
 }
 
 std::optional<LiveMeasure> DrawTool::liveMeasure() const {
@@ -330,7 +353,7 @@ std::string DrawTool::placingHint() const {
   if (constrained) {
     return "Slide " + vertexName(next->vertex) + where + " along its curve onto the same spot; Control leaves the curve.";
   }
-  return "Drag or click " + vertexName(next->vertex) + where + " onto the feature. Either picture may come first; Esc ends.";
+  return "Drag or click " + vertexName(next->vertex) + where + " onto the feature; Shift snaps to corners and edges, Esc ends.";
 }
 
 }  // namespace longarm::session

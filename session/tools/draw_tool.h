@@ -11,7 +11,7 @@ namespace longarm::session {
 
 /// Unplaced copies belong to the tool and are drawn dashed; the first gesture that places a vertex adds the item to
 /// the document, each later one replaces it.  Either picture may come first; in the other one handles slide along
-/// the epipolar curve unless Control is held.  When every vertex is placed in both pictures the tool has finished.
+/// the epipolar curve unless Control is held; with Shift they snap to corners and edges.  When every vertex is placed in both pictures the tool has finished.
 ///
 /// | state      | event                               | next       | answer                                         |
 /// |------------|-------------------------------------|------------|------------------------------------------------|
@@ -32,6 +32,7 @@ namespace longarm::session {
 /// | kPlacing   | arrow                               | kPlacing   | command: places and nudges the active handle   |
 /// | kPlacing   | Return                              | kPlacing   | command: places the active handle where it is  |
 /// | kPlacing   | Tab                                 | kPlacing   | next handle                                    |
+/// | kPlacing   | a suggested match is accepted       | kPlacing   | command: the vertex is placed there            |
 /// | kPlacing   | Delete                              | kPlacing   | command: removes the item, if it was added     |
 class DrawTool : public SketchTool {
  public:
@@ -51,6 +52,8 @@ class DrawTool : public SketchTool {
   bool busy() const override { return m_state == State::kDragging; }
   std::optional<LiveMeasure> liveMeasure() const override;
   std::string hint() const override;
+  std::vector<MatchWish> matchWishes() const override;
+  ToolReply acceptMatch(const MatchHelp& help) override;
 
  protected:
   explicit DrawTool(vision::FeatureKind kind) : m_kind(kind) {}

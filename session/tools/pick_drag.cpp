@@ -1,5 +1,6 @@
 #include "session/tools/pick_drag.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/require.h"
@@ -41,13 +42,32 @@ void PickDrag::beginStroke(const Document& document, const SketchItem& item, con
   m_edit.item = item;
 }
 
-void PickDrag::move(const Eigen::Vector2d& pixel, const Eigen::Vector2d& travel, bool release) {
+Eigen::Vector2d PickDrag::snapped(int vertex, const Eigen::Vector2d& wanted, const Gesture& gesture,
+                                  MatchPictures* pictures, std::optional<vision::SnapKind>* kind) const {
+  if (!gesture.modifiers.shift || pictures == nullptr) return wanted;
+  const auto picture = pictures->of(m_editor->document().snapshot(m_editor->snapshot()));
+  if (!picture) return wanted;
+  const auto snap = m_editor->snapped(vertex, wanted, gesture.modifiers.control, *picture, snapRadius(gesture.tolerance_px));
+  if (!snap) return wanted;
+  *kind = snap->kind;
+  return snap->pixel;
+}
+
+void PickDrag::move(const Gesture& gesture, MatchPictures* pictures) {
   LONGARM_REQUIRE(active(), "no drag to move");
-  switch (m_way) {
-    case Way::kTravel: m_edit = m_editor->moveBy(travel, release); break;
-    case Way::kPointer: m_edit = m_editor->moveTo({pixel}, release); break;
-    case Way::kStroke: m_edit = m_editor->moveTo({pixel, m_stroke_start}, release); break;
+  const bool release = gesture.modifiers.control;
+  const std::vector<int>& vertices = m_editor->vertices();
+  if (m_way == Way::kTravel && vertices.size() > 1) {
+    m_edit = m_editor->moveBy(gesture.travel(), release);
+    return;
   }
+  Eigen::Vector2d wanted = gesture.pixel;
+  if (m_way == Way::kTravel) wanted = m_editor->before().pick(m_editor->snapshot(), vertices[0])->pixel + gesture.travel();
+  std::optional<vision::SnapKind> kind, start_kind;
+  std::vector<Eigen::Vector2d> places{snapped(vertices[0], wanted, gesture, pictures, &kind)};
+  if (m_way == Way::kStroke) places.push_back(snapped(vertices[1], m_stroke_start, gesture, pictures, &start_kind));
+  m_edit = m_editor->moveTo(places, release);
+  m_edit.snapped = kind;
 }
 
 SketchItem PickDrag::finish() {
@@ -64,6 +84,25 @@ Eigen::Vector2d arrowDirection(vision::SketchKey key) {
     case vision::SketchKey::kDown: return {0, 1};
     default: return Eigen::Vector2d::Zero();
   }
+}
+
+double snapRadius(double tolerance_px) { return std::clamp(0.75 * tolerance_px, 4.0, 16.0); }
+
+PickEdit placedAt(const Document& document, const SketchItem& item, const Handle& handle, const Gesture& gesture,
+                  MatchPictures* pictures) {
+  PickDrag drag;
+  drag.beginAtPointer(document, item, handle);
+  drag.move(gesture, pictures);
+  return drag.edit();
+}
+
+vision::Overlay dragPreview(const Document& document, const PickDrag& drag, PaneSide side) {
+  vision::Overlay overlay = handlePreview(document, drag.item(), drag.handle(), side);
+  const SketchPick* pick = drag.item().pick(drag.handle().snapshot, drag.handle().vertex);
+  if (side != drag.handle().side || !drag.edit().snapped || pick == nullptr) return overlay;
+  const std::string word = *drag.edit().snapped == vision::SnapKind::kCorner ? "corner" : "edge";
+  overlay.shapes.push_back({vision::OverlayShape::Kind::kText, vision::OverlayRole::kMatch, {pick->pixel}, word});
+  return overlay;
 }
 
 PickEdit nudged(const Document& document, const SketchItem& item, const Handle& handle, vision::SketchKey key,

@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "session/tools/gesture_filter.h"
+#include "session/tools/match_pictures.h"
 #include "session/tools/pick_editor.h"
 
 namespace longarm::session {
@@ -21,7 +23,9 @@ class PickDrag {
   /// Draws two vertices with one stroke: the first stays at the press, the second follows the pointer.
   void beginStroke(const Document& document, const SketchItem& item, const Handle& first, int second,
                    const Eigen::Vector2d& press_pixel);
-  void move(const Eigen::Vector2d& pixel, const Eigen::Vector2d& travel, bool release);
+  /// Control lets go of the epipolar curve; Shift brings a single handle, or the ends of a stroke, to the corner or edge
+  /// next to it.  @param pictures Null: nothing snaps.
+  void move(const Gesture& gesture, MatchPictures* pictures);
   /// The item as dragged.  @pre active()
   SketchItem finish();
   void cancel() { m_editor.reset(); }
@@ -33,12 +37,23 @@ class PickDrag {
   const Handle& handle() const { return m_handle; }
 
  private:
+  Eigen::Vector2d snapped(int vertex, const Eigen::Vector2d& wanted, const Gesture& gesture, MatchPictures* pictures,
+                          std::optional<vision::SnapKind>* kind) const;
+
   std::unique_ptr<PickEditor> m_editor;
   PickEdit m_edit;
   Handle m_handle;
   enum class Way { kTravel, kPointer, kStroke } m_way = Way::kTravel;
   Eigen::Vector2d m_stroke_start = Eigen::Vector2d::Zero();
 };
+
+/// How far a handle may be drawn to a corner or edge [raw px]: a little less than the pick radius, and some pixels at any zoom.
+double snapRadius(double tolerance_px);
+/// A press that places a vertex: where it was, or with Shift at the corner or edge next to it.
+PickEdit placedAt(const Document& document, const SketchItem& item, const Handle& handle, const Gesture& gesture,
+                  MatchPictures* pictures);
+/// Curve and band of the handle, and what it snapped to.
+vision::Overlay dragPreview(const Document& document, const PickDrag& drag, PaneSide side);
 
 /// Every vertex of the item that has a pick in this picture.
 std::vector<int> verticesIn(const SketchItem& item, SnapshotId snapshot);

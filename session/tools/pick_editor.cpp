@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "session/document/feature_rows.h"
 #include "vision/sketch/overlay.h"
+#include "vision/stereo/epipolar_band.h"
 #include "vision/stereo/triangulate.h"
 
 namespace longarm::session {
@@ -41,6 +42,43 @@ Eigen::Vector2d tangentNear(const vision::EpipolarCurve& curve, const Eigen::Vec
       nearest = distance;
       best = ab.normalized();
     }
+  }
+  return best;
+}
+
+/// The nearest corner before the nearest edge.  A wide search alone would take the strongest of several corners.
+std::optional<vision::SnapPoint> nearestSnap(const vision::MatchPicture& picture, const Eigen::Vector2d& pixel, double radius_px) {
+  constexpr double kFirst_px = 4;
+  for (const bool corners : {true, false}) {
+    for (double reach = std::min(kFirst_px, radius_px);; reach = std::min(2 * reach, radius_px)) {
+      vision::SnapOptions options;
+      options.radius_px = reach;
+      options.corners = corners;
+      options.edges = !corners;
+      if (const auto snap = vision::snapPick(picture, pixel, options)) return snap;
+      if (reach >= radius_px) break;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Where the straight edge through the snapped point crosses the curve, or the curve's point nearest to a corner.
+std::optional<Eigen::Vector2d> heldTo(const vision::EpipolarCurve& curve, const vision::SnapPoint& snap, double radius_px) {
+  if (snap.kind == vision::SnapKind::kCorner) {
+    const auto nearest = curve.nearest(snap.pixel);
+    if (!nearest || (nearest->pixel - snap.pixel).norm() > radius_px) return std::nullopt;
+    return nearest->pixel;
+  }
+  std::optional<Eigen::Vector2d> best;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    if (curve.points[i].begins_piece) continue;
+    const Eigen::Vector2d a = curve.points[i - 1].pixel, ab = curve.points[i].pixel - a, to = snap.pixel - a;
+    const double turn = ab.x() * snap.along.y() - ab.y() * snap.along.x();
+    if (std::abs(turn) < 0.1 * ab.norm()) continue;   // Nearly along the edge: the crossing would be anywhere.
+    const double s = (to.x() * snap.along.y() - to.y() * snap.along.x()) / turn;
+    const Eigen::Vector2d crossing = a + s * ab;
+    if (s < 0 || s > 1 || (crossing - snap.pixel).norm() > radius_px) continue;
+    if (!best || (crossing - snap.pixel).norm() < (*best - snap.pixel).norm()) best = crossing;
   }
   return best;
 }
@@ -134,6 +172,22 @@ PickEdit PickEditor::nudge(const Eigen::Vector2d& direction, double step_px, boo
   return moveBy((along > 0 ? step_px : -step_px) * tangent, false);
 }
 
+std::optional<vision::SnapPoint> PickEditor::snapped(int vertex, const Eigen::Vector2d& wanted, bool release,
+                                                     const vision::MatchPicture& picture, double radius_px) const {
+  const auto curve = m_curves.find(vertex);
+  Eigen::Vector2d from = wanted;
+  if (!release && curve != m_curves.end()) {
+    const auto nearest = curve->second.nearest(wanted);
+    if (nearest) from = nearest->pixel;
+  }
+  auto snap = nearestSnap(picture, from, radius_px);
+  if (!snap || release || curve == m_curves.end()) return snap;
+  const auto held = heldTo(curve->second, *snap, radius_px);
+  if (!held) return std::nullopt;
+  snap->pixel = *held;
+  return snap;
+}
+
 void PickEditor::follow(SketchItem& item, int vertex) const {
   const SketchPick moved = *item.pick(m_snapshot, vertex);
   const SnapshotPtr source = m_document.snapshot(m_snapshot);
@@ -141,11 +195,13 @@ void PickEditor::follow(SketchItem& item, int vertex) const {
     const SketchPick* old = m_before.pick(id, vertex);
     const SnapshotPtr target = m_document.snapshot(id);
     if (id == m_snapshot || old == nullptr || !target) continue;
-    const bool slid = old->state == PickState::kConstrained && moved.state == PickState::kFree;
+    const bool held = old->state == PickState::kConstrained || old->state == PickState::kMatched;
+    const bool slid = held && moved.state == PickState::kFree;
     if (!slid && old->state != PickState::kUnplaced) continue;
     const auto curve = curveBetween(*source, moved.pixel, *target);
     if (!curve) continue;
-    if (const auto nearest = curve->nearest(old->pixel)) item.setPick(id, vertex, {nearest->pixel, old->state});
+    const PickState state = slid ? PickState::kConstrained : PickState::kUnplaced;   // What was matched no longer is.
+    if (const auto nearest = curve->nearest(old->pixel)) item.setPick(id, vertex, {nearest->pixel, state});
   }
 }
 
@@ -164,7 +220,7 @@ void measureVertexAlone(LiveMeasure& live, const Document& document, const Sketc
     const SketchPick* pick = item.pick(id, vertex);
     const SnapshotPtr picture = document.snapshot(id);
     if (pick == nullptr || !pick->placed() || !picture) continue;
-    sightings.push_back({&picture->view, pick->pixel, 0});
+    sightings.push_back({&picture->view, pick->pixel, pick->sigma_px});
   }
   if (sightings.size() < 2) return;
   const auto point = vision::triangulate(sightings);
@@ -223,9 +279,14 @@ vision::Overlay handlePreview(const Document& document, const SketchItem& item, 
   if (!handle.valid() || !here.valid()) return overlay;
   const auto curve = constrainingCurve(document, item, here, handle.vertex);
   if (!curve) return overlay;
+  const SnapshotPtr from = document.snapshot(constrainingSnapshot(document, item, here, handle.vertex));
+  const Eigen::Vector2d& source = item.pick(from->id, handle.vertex)->pixel;
+  const auto band = vision::epipolarBand(from->view, source, document.snapshot(here)->view, *curve);
+  if (band) vision::addEpipolarBand(*curve, *band, &overlay);
   vision::addEpipolarCurve(*curve, &overlay);
   const SketchPick* pick = item.pick(here, handle.vertex);
-  if (pick == nullptr || pick->state != PickState::kReleased) return overlay;
+  const bool off = pick != nullptr && (pick->state == PickState::kReleased || pick->state == PickState::kMatched);
+  if (!off) return overlay;
   const auto nearest = curve->nearest(pick->pixel);
   const LiveMeasure live = liveMeasureOf(document, item, handle);
   vision::OverlayShape line{vision::OverlayShape::Kind::kPolyline, vision::OverlayRole::kMiss,

@@ -9,6 +9,7 @@
 
 #include "session/document/document.h"
 #include "session/tools/sketch_tool.h"
+#include "vision/match/snap.h"
 #include "vision/stereo/epipolar.h"
 
 namespace longarm::session {
@@ -21,6 +22,7 @@ struct PickEdit {
   bool on_curve = false;
   bool released = false;
   std::optional<double> depth;                            ///< z in the camera of the constraining pick [m].
+  std::optional<vision::SnapKind> snapped;                ///< What of the picture drew it there.
 };
 
 /// The picture whose pick of this vertex constrains the one in `snapshot`, or an invalid id.  The first picture of
@@ -35,13 +37,14 @@ std::optional<vision::EpipolarCurve> constrainingCurve(const Document& document,
 /// that the curves that hold its handles are computed once.
 ///
 /// A pick that nothing constrains goes where it is asked (kFree), and picks of the same vertex that were slid along
-/// its curve, or not placed yet, follow to the nearest point of the new curve.  A pick that is constrained goes to
+/// its curve, matched, or not placed yet, follow to the nearest point of the new curve.  A pick that is constrained goes to
 /// the nearest point of its curve, or, released, where it is asked (kReleased).  All picks stay on their picture.
 class PickEditor {
  public:
   /// @pre the snapshot is in the document and the item has a pick there of every vertex given
   PickEditor(const Document& document, SketchItem item, SnapshotId snapshot, std::vector<int> vertices);
 
+  const Document& document() const { return m_document; }
   const SketchItem& before() const { return m_before; }
   SnapshotId snapshot() const { return m_snapshot; }
   const std::vector<int>& vertices() const { return m_vertices; }
@@ -53,6 +56,10 @@ class PickEditor {
   /// One key step of `step_px` pixels: along the curve when the first vertex is constrained and not released, else
   /// in the direction given (a unit vector along u or v).
   PickEdit nudge(const Eigen::Vector2d& direction, double step_px, bool release) const;
+  /// The corner or edge of the picture near the pixel, brought onto the curve where the vertex is held to one: a corner to
+  /// the nearest point of it, an edge to where the two cross.  Nothing when none lies within the radius.
+  std::optional<vision::SnapPoint> snapped(int vertex, const Eigen::Vector2d& wanted, bool release,
+                                           const vision::MatchPicture& picture, double radius_px) const;
 
  private:
   void follow(SketchItem& item, int vertex) const;

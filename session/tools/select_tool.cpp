@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "session/commands/sketch_commands.h"
+#include "session/tools/match_help.h"
 
 namespace longarm::session {
 
@@ -28,7 +29,7 @@ void SelectTool::deactivate() {
   m_filter.cancel();
   m_drag.cancel();
   m_grab.reset();
-  m_active = {};
+  m_active = m_moved = {};
   m_state = State::kIdle;
   m_note.clear();
 }
@@ -126,7 +127,7 @@ ToolReply SelectTool::onDrag(const Gesture& gesture) {
     m_active = m_drag.handle();
     m_state = State::kDragging;
   }
-  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  m_drag.move(gesture, pictures());
   ToolReply reply = consumed();
   if (!m_document->selection().contains(m_active.item)) reply.selection = Selection::of(m_active.item);
   return reply;
@@ -134,13 +135,14 @@ ToolReply SelectTool::onDrag(const Gesture& gesture) {
 
 ToolReply SelectTool::onDragEnd(const Gesture& gesture) {
   if (m_state != State::kDragging) return {};
-  m_drag.move(gesture.pixel, gesture.travel(), gesture.modifiers.control);
+  m_drag.move(gesture, pictures());
   SketchItem after = m_drag.finish();
   m_state = State::kIdle;
   ToolReply reply = consumed();
   const SketchItem* before = m_document->item(after.id);
   if (before == nullptr || *before == after) return reply;
   const bool whole = m_grab && !m_grab->handle.valid();
+  if (!whole) m_moved = m_active;
   const std::string what = whole ? "Move " : "Move handle of ";
   const std::string label = what + std::string(vision::toString(after.kind)) + " " + quoted(after);
   reply.command = replaceItem(*m_document, std::move(after), label);
@@ -236,10 +238,30 @@ void SelectTool::documentChanged() {
   if (m_active.valid() && !exists(m_active)) m_active = {};
 }
 
+// After its first pick was moved a vertex has only been slid along in the other picture.
+std::vector<MatchWish> SelectTool::matchWishes() const {
+  if (m_state == State::kDragging || !m_moved.valid() || !(m_moved == m_active) || !exists(m_moved)) return {};
+  const SketchItem& item = *m_document->item(m_moved.item);
+  const SnapshotId other = m_document->paneSnapshotId(otherSide(m_moved.side));
+  const SketchPick *here = item.pick(m_moved.snapshot, m_moved.vertex), *there = item.pick(other, m_moved.vertex);
+  if (item.locked || there == nullptr || here->state != PickState::kFree || other == m_moved.snapshot) return {};
+  if (there->state != PickState::kConstrained && there->placed()) return {};
+  return {{m_moved.item, m_moved.vertex, m_moved.snapshot, other, here->pixel}};
+}
+
+ToolReply SelectTool::acceptMatch(const MatchHelp& help) {
+  const SketchItem* item = m_document == nullptr ? nullptr : m_document->item(help.wish.item);
+  if (m_state != State::kIdle || item == nullptr || help.matches.empty()) return {};
+  ToolReply reply = consumed();
+  m_moved = {};
+  reply.command = replaceItem(*m_document, withMatch(*item, help), "Accept match of " + quoted(*item));
+  return reply;
+}
+
 const SketchItem* SelectTool::draft() const { return m_drag.active() ? &m_drag.item() : nullptr; }
 
 vision::Overlay SelectTool::preview(PaneSide side) const {
-  if (m_drag.active()) return handlePreview(*m_document, m_drag.item(), m_drag.handle(), side);
+  if (m_drag.active()) return dragPreview(*m_document, m_drag, side);
   if (!exists(m_active)) return {};
   return handlePreview(*m_document, *m_document->item(m_active.item), m_active, side);
 }

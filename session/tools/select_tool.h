@@ -45,6 +45,8 @@ class SelectTool final : public SketchTool {
   bool busy() const override { return m_state == State::kDragging; }
   std::optional<LiveMeasure> liveMeasure() const override;
   std::string hint() const override;
+  std::vector<MatchWish> matchWishes() const override;
+  ToolReply acceptMatch(const MatchHelp& help) override;
 
  private:
   ToolReply onPress(const Gesture& gesture);
@@ -64,6 +66,7 @@ class SelectTool final : public SketchTool {
   std::optional<Hit> m_grab;
   PickDrag m_drag;
   Handle m_active;
+  Handle m_moved;                          // Dragged last; a match may help in the other picture.
   std::string m_note;                      // Replaces the hint until the next event.
 };
 

@@ -9,6 +9,7 @@
 
 #include "session/commands/edit_command.h"
 #include "session/document/document.h"
+#include "vision/match/suggest.h"
 #include "vision/sketch/pointer_event.h"
 
 namespace longarm::session {
@@ -56,6 +57,29 @@ struct LiveMeasure {
   std::string text() const;
 };
 
+/// A vertex that is placed in one pane and not for good in the other: where is it seen again?
+struct MatchWish {
+  FeatureId item;
+  int vertex = 0;
+  SnapshotId from, to;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();         ///< In `from` [raw px].
+
+  friend bool operator==(const MatchWish& a, const MatchWish& b) {
+    return a.item == b.item && a.vertex == b.vertex && a.from == b.from && a.to == b.to && a.pixel == b.pixel;
+  }
+};
+
+/// What was found, best first; empty: nothing is seen again.
+struct MatchHelp {
+  MatchWish wish;
+  std::vector<vision::Match> matches;
+
+  /// Sure enough to be offered; never taken unasked.
+  bool offered() const { return !matches.empty() && matches.front().score > vision::kOfferScore; }
+};
+
+class MatchPictures;
+
 /// Knows no Qt.  Reads the document that activate() gave it and never writes it: a gesture ends in one command.
 class SketchTool {
  public:
@@ -85,6 +109,19 @@ class SketchTool {
   virtual std::optional<LiveMeasure> liveMeasure() const = 0;
   /// Status text for the state.
   virtual std::string hint() const = 0;
+  /// For which vertices a match would help now; none while dragging.
+  virtual std::vector<MatchWish> matchWishes() const { return {}; }
+  /// The operator takes the best match of one of the wishes.
+  virtual ToolReply acceptMatch(const MatchHelp& /*help*/) { return {}; }
+
+  /// Pictures to snap in; borrowed, may be null.
+  void usePictures(MatchPictures* pictures) { m_pictures = pictures; }
+
+ protected:
+  MatchPictures* pictures() const { return m_pictures; }
+
+ private:
+  MatchPictures* m_pictures = nullptr;
 };
 
 std::unique_ptr<SketchTool> makeTool(ToolKind kind);

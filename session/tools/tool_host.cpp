@@ -1,11 +1,15 @@
 #include "session/tools/tool_host.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "session/tools/match_help.h"
 
 namespace longarm::session {
 
 ToolHost::ToolHost(Document& document, EditHistory& history)
     : m_document(document), m_history(history), m_tool(makeTool(ToolKind::kSelect)) {
+  m_tool->usePictures(m_pictures.get());
   m_tool->activate(m_document);
   m_observer = m_document.observe([this](const Change&) {
     m_tool->documentChanged();
@@ -20,6 +24,7 @@ void ToolHost::setTool(ToolKind kind) {
   const Handle active = m_tool->activeHandle();
   m_tool->deactivate();
   m_tool = makeTool(kind);
+  m_tool->usePictures(m_pictures.get());
   m_tool->activate(m_document);
   m_tool->setActiveHandle(active);
   m_history.seal();
@@ -35,7 +40,29 @@ bool ToolHost::pointer(const vision::PointerEvent& event) {
 }
 
 bool ToolHost::key(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
+  if (key == vision::SketchKey::kTab && !modifiers.shift && !m_tool->busy()) {
+    for (const auto& help : matchHelp()) {
+      if (!help.offered()) continue;
+      m_history.seal();
+      return handle(m_tool->acceptMatch(help));
+    }
+  }
   return handle(m_tool->onKey(key, modifiers));
+}
+
+void ToolHost::setMatchHelp(std::vector<MatchHelp> help) {
+  m_help = std::move(help);
+  announce();
+}
+
+std::vector<MatchHelp> ToolHost::matchHelp() const {
+  std::vector<MatchHelp> live;
+  if (m_help.empty()) return live;
+  const auto wishes = m_tool->matchWishes();
+  for (const auto& help : m_help) {
+    if (std::find(wishes.begin(), wishes.end(), help.wish) != wishes.end()) live.push_back(help);
+  }
+  return live;
 }
 
 bool ToolHost::handle(ToolReply reply) {
@@ -53,7 +80,7 @@ bool ToolHost::handle(ToolReply reply) {
 
 void ToolHost::announce() {
   if (m_callbacks.overlay_changed) m_callbacks.overlay_changed();
-  if (m_callbacks.hint_changed) m_callbacks.hint_changed(m_tool->hint());
+  if (m_callbacks.hint_changed) m_callbacks.hint_changed(hint());
 }
 
 vision::Overlay ToolHost::overlay(PaneSide side, const OverlayOptions& options) const {
@@ -64,13 +91,17 @@ vision::Overlay ToolHost::overlay(PaneSide side, const OverlayOptions& options) 
   all.active_vertex = active.vertex;
   all.active_snapshot = active.snapshot;
   vision::Overlay overlay = m_tool->preview(side);
+  addMatchHelp(matchHelp(), m_document.paneSnapshotId(side), &overlay);
   vision::Overlay sketch = buildOverlay(m_document, m_document.paneSnapshotId(side), all);
   overlay.shapes.insert(overlay.shapes.end(), std::make_move_iterator(sketch.shapes.begin()),
                         std::make_move_iterator(sketch.shapes.end()));
   return overlay;
 }
 
-std::string ToolHost::hint() const { return m_tool->hint(); }
+std::string ToolHost::hint() const {
+  const std::string help = matchHint(matchHelp());
+  return help.empty() ? m_tool->hint() : help;
+}
 std::optional<LiveMeasure> ToolHost::liveMeasure() const { return m_tool->liveMeasure(); }
 Handle ToolHost::activeHandle() const { return m_tool->activeHandle(); }
 bool ToolHost::busy() const { return m_tool->busy(); }

@@ -10,6 +10,7 @@
 
 #include "session/commands/edit_history.h"
 #include "session/document/overlay_builder.h"
+#include "session/tools/match_pictures.h"
 #include "session/tools/sketch_tool.h"
 
 namespace longarm::session {
@@ -36,11 +37,18 @@ class ToolHost {
 
   /// @returns whether the tool used it; what it did not use belongs to the canvas.
   bool pointer(const vision::PointerEvent& event);
+  /// Tab takes the best match that is offered, and is the tool's when there is none.
   bool key(vision::SketchKey key, const vision::KeyModifiers& modifiers = {});
 
   /// Everything to draw over the picture in this pane: sketch, path, preview.
   vision::Overlay overlay(PaneSide side, const OverlayOptions& options = {}) const;
   std::string hint() const;
+  /// For which vertices a match would help now, and what was found for them.  What is no longer wished is not shown.
+  std::vector<MatchWish> matchWishes() const { return m_tool->matchWishes(); }
+  void setMatchHelp(std::vector<MatchHelp> help);
+  std::vector<MatchHelp> matchHelp() const;
+  /// Pictures in floats, for snapping and matching; may be shared with jobs.
+  const std::shared_ptr<MatchPictures>& pictures() const { return m_pictures; }
   std::optional<LiveMeasure> liveMeasure() const;
   Handle activeHandle() const;
   /// A drag is going on: undo and other edits wait until it ends.
@@ -52,7 +60,9 @@ class ToolHost {
 
   Document& m_document;
   EditHistory& m_history;
+  std::shared_ptr<MatchPictures> m_pictures = std::make_shared<MatchPictures>();
   std::unique_ptr<SketchTool> m_tool;
+  std::vector<MatchHelp> m_help;
   Callbacks m_callbacks;
   int m_observer = 0;
   bool m_in_reply = false;

@@ -218,7 +218,7 @@ class RandomEditor {
     item.name = m_bench.document.freeName(item.kind);
     for (const auto& snapshot : m_bench.document.snapshots()) {
       for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
-        if (below(5) != 0) item.setPick(snapshot->id, vertex, {{pixel(), pixel() * 0.75}, static_cast<PickState>(below(4))});
+        if (below(5) != 0) item.setPick(snapshot->id, vertex, {{pixel(), pixel() * 0.75}, static_cast<PickState>(below(5)), below(2) == 0 ? 0 : pixel() / 640});
       }
     }
     return item;
@@ -242,7 +242,7 @@ class RandomEditor {
     SketchItem after = *item;
     const SnapshotId id = std::next(after.picks.begin(), static_cast<long>(below(after.picks.size())))->first;
     after.setPick(id, static_cast<int>(below(static_cast<std::size_t>(vision::vertexCount(after.kind)))),
-                  {{pixel(), pixel()}, static_cast<PickState>(below(4))});
+                  {{pixel(), pixel()}, static_cast<PickState>(below(5))});
     return replaceItem(m_bench.document, after, "Move", merge_key);
   }
   CommandPtr snapshotEdit() {

@@ -1,5 +1,6 @@
 #include "vision/sketch/overlay.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -29,6 +30,22 @@ std::vector<std::vector<std::size_t>> edgesOf(FeatureKind kind) {
   return {};
 }
 
+// There along one edge of the band, back along the other.  @pre end - first > 1
+std::vector<Eigen::Vector2d> bandOutline(const EpipolarCurve& curve, const std::vector<double>& sigma_px, std::size_t first,
+                                         std::size_t end) {
+  std::vector<Eigen::Vector2d> there, back;
+  for (std::size_t i = first; i < end; ++i) {
+    const Eigen::Vector2d chord = curve.points[std::min(i + 1, end - 1)].pixel - curve.points[std::max(i, first + 1) - 1].pixel;
+    const double length = chord.norm();
+    if (!(length > 0) || !std::isfinite(sigma_px[i])) continue;
+    const Eigen::Vector2d across = 2 * sigma_px[i] / length * Eigen::Vector2d(-chord.y(), chord.x());
+    there.push_back(curve.points[i].pixel + across);
+    back.push_back(curve.points[i].pixel - across);
+  }
+  there.insert(there.end(), back.rbegin(), back.rend());
+  return there;
+}
+
 }  // namespace
 
 void addEpipolarCurve(const EpipolarCurve& curve, Overlay* overlay) {
@@ -41,6 +58,16 @@ void addEpipolarCurve(const EpipolarCurve& curve, Overlay* overlay) {
   for (const auto& tick : curve.ticks) {
     overlay->shapes.push_back({Kind::kMarker, OverlayRole::kDepthTick, {tick.pixel}, {}});
     overlay->shapes.push_back({Kind::kText, OverlayRole::kDepthTick, {tick.pixel}, formatNumber(tick.depth) + " m"});
+  }
+}
+
+void addEpipolarBand(const EpipolarCurve& curve, const std::vector<double>& sigma_px, Overlay* overlay) {
+  const std::size_t n = std::min(curve.points.size(), sigma_px.size());
+  for (std::size_t first = 0; first < n;) {
+    std::size_t end = first + 1;
+    while (end < n && !curve.points[end].begins_piece) ++end;
+    if (end - first > 1) overlay->shapes.push_back({Kind::kArea, OverlayRole::kBand, bandOutline(curve, sigma_px, first, end), {}});
+    first = end;
   }
 }
 

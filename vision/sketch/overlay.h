@@ -18,6 +18,9 @@ namespace longarm::vision {
 /// The curve, and a marker and a label ("0.5 m") at every depth tick.
 void addEpipolarCurve(const EpipolarCurve& curve, Overlay* overlay);
 
+/// The band of +- 2 sigma about the curve, as areas.  @param sigma_px One per point of the curve (epipolarBand).
+void addEpipolarBand(const EpipolarCurve& curve, const std::vector<double>& sigma_px, Overlay* overlay);
+
 /// Outline of the region of the picture that holds the point with 95 % probability (axes 2.448 sigma), as a
 /// closed polyline of raw pixels; empty when the point cannot be seen.
 std::vector<Eigen::Vector2d> errorEllipse(const View& view, const Eigen::Vector3d& xyz,

@@ -35,10 +35,13 @@ enum class SketchKey { kEscape, kDelete, kLeft, kRight, kUp, kDown, kTab, kRetur
 
 /// What a shape means; the canvas maps it to colour, width and dash of the theme.
 enum class OverlayRole { kSketch, kSelected, kHandle, kActiveHandle, kUnplaced, kEpipolar, kDepthTick, kMiss,
-                         kEllipse, kPath, kPathOccluded, kWarning, kLabel };
+                         kEllipse, kPath, kPathOccluded, kWarning, kLabel,
+                         kBand,         ///< Where the calibration may put the true curve, +- 2 sigma.
+                         kMatch,        ///< A match that is offered.
+                         kRival };      ///< One of several places that look alike.
 
 struct OverlayShape {
-  enum class Kind { kPolyline, kMarker, kText } kind = Kind::kPolyline;
+  enum class Kind { kPolyline, kMarker, kText, kArea } kind = Kind::kPolyline;   ///< kArea: filled, seen through.
   OverlayRole role = OverlayRole::kSketch;
   std::vector<Eigen::Vector2d> points;     ///< Raw image pixels.
   std::string text;                        ///< kText: label; anchored at points[0].

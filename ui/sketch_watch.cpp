@@ -1,0 +1,34 @@
+#include "ui/sketch_watch.h"
+
+#include "session/tools/calibration_watch.h"
+
+namespace longarm::ui {
+
+namespace {
+
+const QString kKey = QStringLiteral("calibration");
+
+}  // namespace
+
+SketchWatch::SketchWatch(Workbench& bench, NoticeBar& notices, QObject* parent)
+    : QObject(parent), m_bench(bench), m_notices(notices) {
+  connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &SketchWatch::refresh);
+  refresh();
+}
+
+void SketchWatch::refresh() {
+  const auto concern = session::calibrationConcern(m_bench.document());
+  const QString text = QString::fromStdString(session::calibrationWarning(m_bench.document(), concern));
+  if (text == m_said) return;
+  m_said = text;
+  if (text.isEmpty()) return m_notices.clear(kKey);
+  std::vector<NoticeAnswer> answers;
+  if (!concern.off.empty()) {
+    const FeatureId id = concern.off.front().item;
+    answers.push_back({tr("Select it"), [this, id] { m_bench.targeting().select(id); }});
+  }
+  answers.push_back({tr("Understood"), {}});
+  m_notices.post(kKey, text, answers);
+}
+
+}  // namespace longarm::ui

@@ -1,0 +1,29 @@
+#pragma once
+
+/// @file
+/// SketchWatch: tells the operator, beside everything else, when picks speak against the calibration.
+
+#include <QObject>
+
+#include "ui/notice_bar.h"
+#include "ui/workbench.h"
+
+namespace longarm::ui {
+
+/// A notice answered with "Understood" comes back when what it says has changed.  GUI thread only.
+class SketchWatch final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// Borrowed; both outlive this.
+  SketchWatch(Workbench& bench, NoticeBar& notices, QObject* parent = nullptr);
+
+ private:
+  void refresh();
+
+  Workbench& m_bench;
+  NoticeBar& m_notices;
+  QString m_said;                          // Shown, or answered.
+};
+
+}  // namespace longarm::ui
