@@ -1,6 +1,7 @@
 #include "tests/benchmarks/gate.h"
 
 #include <algorithm>
+#include <ctime>
 #include <iomanip>
 #include <ostream>
 
@@ -48,6 +49,20 @@ std::string seconds(double s) {
 }
 
 }  // namespace
+
+double workSeconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Latency latencyOf(std::vector<double> wall_s, std::vector<double> work_s) {
+  if (wall_s.empty() || work_s.empty()) return {};
+  std::sort(wall_s.begin(), wall_s.end());
+  std::sort(work_s.begin(), work_s.end());
+  const std::size_t late = 95 * wall_s.size() / 100;
+  return {wall_s[late], wall_s[wall_s.size() / 2], work_s[95 * work_s.size() / 100]};
+}
 
 std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repetitions) {
   benchmark::ClearRegisteredBenchmarks();

@@ -56,11 +56,17 @@ void printTable(const std::vector<Outcome>& outcomes, std::ostream& out);
 /// {"benchmarks": [{name, ours_s, peer, peer_s, ratio, gate, moonshot, accuracy, passed}]}, as the verb `bench`.
 std::string toJson(const std::vector<Outcome>& outcomes);
 
+/// Processor time of this thread [s].
+double workSeconds();
+/// Of times taken one by one; zeros when there are none.
+Latency latencyOf(std::vector<double> wall_s, std::vector<double> work_s);
+
 /// The contests of each room.  Empty where they cannot run here; `skipped` then says why, by name.
 std::vector<Contest> stereoContests();
 #ifdef LONGARM_WITH_KDL
 std::vector<Contest> robotContests();
 #endif
+std::vector<Budget> stereoBudgets();
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);
 

@@ -56,7 +56,8 @@ int run(int argc, char** argv) {
   for (const char* name : {"fk_jacobian", "ik", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
 #endif
   for (auto& contest : paneContests(&skipped)) contests.push_back(std::move(contest));
-  std::vector<Budget> budgets = paneBudgets(&skipped);
+  std::vector<Budget> budgets = stereoBudgets();
+  for (auto& budget : paneBudgets(&skipped)) budgets.push_back(std::move(budget));
   std::vector<std::string> known;
   keepNamed(options.names, &contests, &known);
   keepNamed(options.names, &budgets, &known);

@@ -181,12 +181,6 @@ Accuracy samePicture(CanvasPane* ours, GlPane* theirs) {
   return {std::abs(a - b) < 4, "mean grey " + std::to_string(a) + " and " + std::to_string(b) + " (both show the picture)"};
 }
 
-double workSeconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // Two panes and the sketch between them, as in the console, at full size.
 class DragScene {
  public:
@@ -298,9 +292,7 @@ Latency measureDrag() {
   const int before = scene.redraws();
   DragScene::Times times = scene.drag(400);
   if (scene.redraws() - before < 400) return {1e9, 1e9, 1e9};      // nothing was dragged
-  std::sort(times.wall.begin(), times.wall.end());
-  std::sort(times.work.begin(), times.work.end());
-  return {times.wall[380], times.wall[200], times.work[380]};
+  return latencyOf(times.wall, times.work);
 }
 
 }  // namespace

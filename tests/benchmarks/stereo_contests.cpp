@@ -1,4 +1,5 @@
 // Clicks and epipolar curves against OpenCV.
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -128,6 +129,54 @@ Contest clickContest(const std::shared_ptr<Head>& head) {
   return contest;
 }
 
+std::vector<Vector3d> locateAllByOpenCv(const Head& head, const std::vector<cv::Point2d>& raw_a, const std::vector<cv::Point2d>& raw_b) {
+  std::vector<cv::Point2d> ideal_a, ideal_b;
+  cv::undistortPoints(raw_a, ideal_a, head.K, head.D);
+  cv::undistortPoints(raw_b, ideal_b, head.K, head.D);
+  cv::Mat H;
+  cv::triangulatePoints(head.P1, head.P2, ideal_a, ideal_b, H);
+  std::vector<Vector3d> points;
+  for (int i = 0; i < H.cols; ++i) {
+    points.push_back(Vector3d(H.at<double>(0, i), H.at<double>(1, i), H.at<double>(2, i)) / H.at<double>(3, i));
+  }
+  return points;
+}
+
+Accuracy batchAccuracy(const Head& head) {
+  const int count = 100000;
+  const Clicks clicks(head, count, 4);
+  std::vector<Vector3d> points;
+  const std::size_t located = vision::PairTriangulator(head.left, head.right).locateAll(clicks.a, clicks.b, &points);
+  double ours2 = 0, floor2 = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ours2 += (points[i] - clicks.truth[i]).squaredNorm();
+    floor2 += floorVariance(head, clicks.truth[i]);
+  }
+  const double rms = std::sqrt(ours2 / floor2);
+  return {located == points.size() && rms <= 1.01, "rms " + formatFixed(rms, 4) + " of the Cramer-Rao floor (limit 1.01)"};
+}
+
+Contest batchContest(const std::shared_ptr<Head>& head) {
+  constexpr int kBatch = 1000;
+  auto clicks = std::make_shared<Clicks>(*head, kBatch, 1);
+  auto pair = std::make_shared<vision::PairTriangulator>(head->left, head->right);
+  auto raw = std::make_shared<std::array<std::vector<cv::Point2d>, 2>>();
+  for (int i = 0; i < kBatch; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    (*raw)[0].emplace_back(clicks->a[k].x(), clicks->a[k].y());
+    (*raw)[1].emplace_back(clicks->b[k].x(), clicks->b[k].y());
+  }
+  auto points = std::make_shared<std::vector<Vector3d>>();
+  Contest contest{"batch", "OpenCV undistortPoints x 2 + triangulatePoints, 1000 pairs", {}, {}, 100, 1000, false, {}};
+  contest.ours = [=] { benchmark::DoNotOptimize(pair->locateAll(clicks->a, clicks->b, points.get())); };
+  contest.theirs = [=] {
+    auto located = locateAllByOpenCv(*head, (*raw)[0], (*raw)[1]);
+    benchmark::DoNotOptimize(located.data());
+  };
+  contest.accuracy = [head] { return batchAccuracy(*head); };
+  return contest;
+}
+
 // Depths uniform in inverse depth, as ours.
 void curveByOpenCv(const Head& head, const Vector2d& pixel, const cv::TermCriteria* to_the_end,
                    std::vector<cv::Point2d>* curve) {
@@ -195,7 +244,7 @@ Contest curveContest(const std::shared_ptr<Head>& head) {
 std::vector<Contest> stereoContests() {
   cv::setNumThreads(1);
   const auto head = std::make_shared<Head>();
-  return {clickContest(head), curveContest(head)};
+  return {clickContest(head), batchContest(head), curveContest(head)};
 }
 
 }  // namespace longarm::benchmarks

@@ -49,6 +49,34 @@ TEST(PairTriangulator, AgreesWithTriangulateFarBelowTheNoise) {
   }
 }
 
+TEST(PairTriangulator, ManyAtOnceAreWhatEachIsAlone) {
+  for (const bool lens : {false, true}) {
+    const StereoRig rig(lens);
+    const PairTriangulator pair(rig.left, rig.right);
+    Dice dice(6);
+    std::vector<Eigen::Vector2d> a, b;
+    for (int i = 0; i < 1003; ++i) {       // Not a whole number of blocks.
+      a.emplace_back(dice.uniform(-60, 700), dice.uniform(-60, 540));
+      b.emplace_back(dice.uniform(-60, 700), a.back().y() + dice.normal(6));
+    }
+    std::vector<Vector3d> points;
+    const std::size_t located = pair.locateAll(a, b, &points);
+    std::size_t expected = 0;
+    ASSERT_EQ(points.size(), a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      PairPoint alone;
+      const bool found = pair.locate(a[i], b[i], &alone);
+      expected += found ? 1 : 0;
+      ASSERT_EQ(found, points[i].allFinite()) << "pair " << i;
+      // Fused multiplications may round otherwise.
+      if (found) ASSERT_LT((points[i] - alone.xyz).norm(), 1e-9 * (1 + alone.xyz.norm())) << "pair " << i;
+    }
+    EXPECT_EQ(located, expected);
+    EXPECT_GT(located, 200U);
+    EXPECT_LT(located, 1000U);
+  }
+}
+
 TEST(PairTriangulator, StatesTheUncertaintyItHas) {
   const StereoRig rig;
   const PairTriangulator pair(rig.left, rig.right);

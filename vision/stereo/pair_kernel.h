@@ -37,4 +37,15 @@ PairAnswer solvePixels(const CameraPair& pair, const double u[2], const double v
 PairAnswer solveRays(const CameraPair& pair, const double x[2], const double y[2], const double d_xx[2],
                      const double d_xy[2], const double d_yy[2], PairSolution* out);
 
+/// Raw pixels of many pairs, and where they are; each array holds n.
+struct PairPixels {
+  const double *u_a, *v_a, *u_b, *v_b;
+};
+struct PairPlaces {
+  double *x, *y, *z;                     ///< Seen from the first camera's centre, in the parent frame [m].
+  double* located;                       ///< 1, or 0 where solvePixels() would not answer kLocated.
+};
+/// Several at once, as wide as the processor is.  The arrays must not overlap.
+void solvePixelsOfMany(const CameraPair& pair, int n, const PairPixels& in, const PairPlaces& out);
+
 }  // namespace longarm::vision::internal

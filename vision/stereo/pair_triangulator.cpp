@@ -1,6 +1,8 @@
 #include "vision/stereo/pair_triangulator.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/require.h"
 #include "vision/camera/lens.h"
@@ -63,6 +65,35 @@ bool PairTriangulator::locate(const Vector2d& pixel_a, const Vector2d& pixel_b, 
   point->miss_m = s.gap;
   point->parallax = std::atan2(s.sine, s.cosine);
   return true;
+}
+
+std::size_t PairTriangulator::locateAll(const std::vector<Vector2d>& pixels_a, const std::vector<Vector2d>& pixels_b,
+                                        std::vector<Eigen::Vector3d>* points) const {
+  LONGARM_REQUIRE(pixels_a.size() == pixels_b.size(), "PairTriangulator: lists of different lengths");
+  constexpr std::size_t kBlock = 256;        // its arrays stay in the nearest cache
+  double in[4][kBlock], out[4][kBlock];
+  points->resize(pixels_a.size());
+  std::size_t located = 0;
+  for (std::size_t first = 0; first < pixels_a.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, pixels_a.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      in[0][i] = pixels_a[first + i].x();
+      in[1][i] = pixels_a[first + i].y();
+      in[2][i] = pixels_b[first + i].x();
+      in[3][i] = pixels_b[first + i].y();
+    }
+    internal::solvePixelsOfMany(m_pair, static_cast<int>(count), {in[0], in[1], in[2], in[3]}, {out[0], out[1], out[2], out[3]});
+    for (std::size_t i = 0; i < count; ++i) {
+      Eigen::Vector3d& point = (*points)[first + i];
+      point = m_p_WA + Eigen::Vector3d(out[0][i], out[1][i], out[2][i]);
+      PairPoint thorough;
+      // What the quick lens inversion cannot do may still have an answer.
+      if (out[3][i] == 0 && locate(pixels_a[first + i], pixels_b[first + i], &thorough)) point = thorough.xyz;
+      else if (out[3][i] == 0) point.setConstant(std::numeric_limits<double>::quiet_NaN());
+      located += std::isnan(point.x()) ? 0 : 1;
+    }
+  }
+  return located;
 }
 
 internal::PairAnswer PairTriangulator::solveThoroughly(const Vector2d& pixel_a, const Vector2d& pixel_b,

@@ -3,6 +3,9 @@
 /// @file
 /// The quick way from a pair of clicks to a 3-D point with covariance, for drags and batches.
 
+#include <cstddef>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "vision/snapshot/view.h"
@@ -29,6 +32,12 @@ class PairTriangulator {
   /// @returns false where triangulate() would refuse (it says why): a pixel has no ray, the rays are too
   ///   nearly parallel, or they meet behind a camera.
   bool locate(const Eigen::Vector2d& pixel_a, const Eigen::Vector2d& pixel_b, PairPoint* point) const;
+
+  /// Places of many pairs without their covariance: several are solved at once.
+  /// @param points  One row each; of a refused pair not a number.
+  /// @returns how many were located.  @pre both lists are equally long
+  std::size_t locateAll(const std::vector<Eigen::Vector2d>& pixels_a, const std::vector<Eigen::Vector2d>& pixels_b,
+                        std::vector<Eigen::Vector3d>* points) const;
 
  private:
   /// For pixels at the edge of what a lens shows, where the quick inversion does not settle.
