@@ -15,9 +15,9 @@
 namespace longarm::ui {
 
 enum class ActionId {
-  kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kQuit,
-  kUndo, kRedo, kDelete, kRename, kDuplicate, kHide, kLock, kSelectAll, kCancel,
-  kToolSelect, kToolPoint, kToolLine, kToolPlane, kToolTriad,
+  kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kExportWorld, kQuit,
+  kUndo, kRedo, kDelete, kRename, kDuplicate, kNote, kNumbers, kColour, kGroup, kUngroup, kHide, kLock, kSelectAll, kCancel,
+  kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld,
   kTaskTarget, kTaskCalibrate,
   kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,

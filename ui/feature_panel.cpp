@@ -13,7 +13,8 @@ FeaturePanel::FeaturePanel(session::TargetingController& targeting, Actions& act
   column->setContentsMargins(3, 3, 3, 3);
   buildView();
   column->addWidget(m_view);
-  for (const auto id : {ActionId::kRename, ActionId::kHide, ActionId::kLock, ActionId::kDuplicate, ActionId::kDelete}) {
+  for (const auto id : {ActionId::kRename, ActionId::kNote, ActionId::kNumbers, ActionId::kColour, ActionId::kHide, ActionId::kLock,
+                        ActionId::kGroup, ActionId::kUngroup, ActionId::kDuplicate, ActionId::kAddToWorld, ActionId::kDelete}) {
     m_view->addAction(actions.at(id));
   }
   m_view->setContextMenuPolicy(Qt::ActionsContextMenu);

@@ -46,6 +46,8 @@ QString FeatureTable::tip(const session::FeatureRow& row, int column) const {
   if (column == kLocked) return row.locked ? tr("Locked: click to let it be moved") : tr("Click to keep it from being moved");
   if (!row.measured) return QString::fromStdString(row.reason);
   QString text = tr("%1 (%2)").arg(QString::fromStdString(row.name), QString::fromLatin1(vision::toString(row.kind)));
+  if (!row.note.empty()) text += QLatin1Char('\n') + QString::fromStdString(row.note);
+  if (row.group != 0) text += QLatin1Char('\n') + tr("In group %1").arg(row.group);
   for (const auto& warning : row.warnings) text += QLatin1Char('\n') + QString::fromStdString(warning);
   return text;
 }
@@ -53,7 +55,11 @@ QString FeatureTable::tip(const session::FeatureRow& row, int column) const {
 QVariant FeatureTable::mark(const session::FeatureRow& row, int column) const {
   const auto& theme = m_appearance.theme();
   if (column == kName) {
-    return widgets::icon(QStringLiteral("tool-") + QString::fromLatin1(vision::toString(row.kind)), theme);
+    const QString word = row.pipe ? QStringLiteral("pipe") : QString::fromLatin1(vision::toString(row.kind));
+    if (!row.colour) return widgets::icon(QStringLiteral("tool-") + word, theme);
+    widgets::Theme own = theme;
+    own.text = own.on_selection = QColor::fromRgb(static_cast<QRgb>(*row.colour));
+    return widgets::icon(QStringLiteral("tool-") + word, own);
   }
   if (column == kShown) return widgets::icon(row.hidden ? QStringLiteral("feature-hide") : QStringLiteral("feature-show"), theme);
   if (column == kLocked) return widgets::icon(row.locked ? QStringLiteral("feature-lock") : QStringLiteral("feature-unlock"), theme);
@@ -84,7 +90,7 @@ QVariant FeatureTable::headerData(int section, Qt::Orientation orientation, int 
       {QT_TR_NOOP("Feature"), QT_TR_NOOP("Name; double-click or F2 to change it")},
       {QT_TR_NOOP("x, y, z mm"), QT_TR_NOOP("Point, or middle of a line, in the robot's frame")},
       {QT_TR_NOOP("\u00b1 mm"), QT_TR_NOOP("95 % along the worst direction")},
-      {QT_TR_NOOP("Length"), QT_TR_NOOP("Between the two ends, with 95 % interval")},
+      {QT_TR_NOOP("Length, size"), QT_TR_NOOP("Between the two ends, with 95 % interval; a pipe's radius; a box's edges")},
       {QT_TR_NOOP("Miss mm"), QT_TR_NOOP("Distance between the two viewing rays; a growing miss is the first sign of a knocked camera")},
       {"", QT_TR_NOOP("Shown or hidden: click to change")},
       {"", QT_TR_NOOP("Locked or free to be moved: click to change")}};

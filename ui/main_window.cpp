@@ -13,6 +13,7 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "ui/compare_dialog.h"
 #include "ui/macro_memory.h"
 #include "ui/shortcut_sheet.h"
 #include "ui/sketch_watch.h"
@@ -24,7 +25,7 @@ using vision::PaneSide;
 MainWindow::MainWindow(Workbench& bench, Appearance& appearance, QSettings& settings, QWidget* parent)
     : QMainWindow(parent), m_bench(bench), m_appearance(appearance), m_settings(settings), m_actions(new Actions(appearance, this)),
       m_stop_keys(new StopKeys([&bench] { return bench.robot().armed() || bench.robot().status().moving; }, this)),
-      m_files(new FileActions(bench, *m_actions, settings, this)) {
+      m_files(new FileActions(bench, *m_actions, settings, this)), m_edits(new SketchEdits(bench, *m_actions, this)) {
   new MacroMemory(bench.plans(), settings, this);
   setObjectName(QStringLiteral("longarm"));
   new SketchActions(bench.targeting(), *m_actions, this);
@@ -67,6 +68,8 @@ void MainWindow::makePanels() {
   m_motion = new MotionPanel(m_bench, *m_actions, m_appearance);
   m_stop = new StopPanel(m_bench, *m_actions, m_appearance);
   m_cameras = new CamerasPanel(m_bench, m_appearance);
+  m_snapshots = new SnapshotsPanel(m_bench, m_appearance);
+  m_world = new WorldPanel(m_bench, *m_actions);
   m_strip = new StatusStrip(m_bench, *m_actions, m_appearance);
   m_notices = new NoticeBar;
   m_tasks = new TaskTabs(*m_actions);
@@ -95,8 +98,11 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("jog"), tr("Jog arm"), scrolled(m_jog), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
-  m_docks->tabifyDockWidget(dock("features"), dock("jog"));
+  // Behind the list of features, so that they take no room of their own.
+  for (const char* name : {"jog", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
   m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
@@ -163,6 +169,7 @@ void MainWindow::makeMenus() {
     }
     switch (spec.id) {
       case ActionId::kSaveSketch:
+      case ActionId::kExportWorld:
       case ActionId::kQuit:
       case ActionId::kDelete:
       case ActionId::kSelectAll:
@@ -190,8 +197,14 @@ void MainWindow::connectPanels() {
     SnapshotPane* pane = m_pictures->pane(side);
     const auto show = [this, pane] { m_scene->setPane(pane->side(), pane->view(), pane->picture()); };
     connect(pane, &SnapshotPane::shownChanged, this, show);
+    connect(pane, &SnapshotPane::menuRequested, m_edits, [this, pane](const QPoint& at) { m_edits->showMenu(*pane, at); });
     show();
   }
+  connect(m_snapshots, &SnapshotsPanel::compareRequested, this, [this](const vision::SnapshotPtr& a, const vision::SnapshotPtr& b) {
+    auto* dialog = new CompareDialog(a, b, m_appearance.theme(), this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->show();
+  });
   connect(&m_appearance, &Appearance::changed, this, &MainWindow::applyTheme);
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, [this] { showMode(); showLinkNotice(); });
   connect(&m_bench.play(), &session::PlayController::changed, this, &MainWindow::showPlanNotice);

@@ -21,12 +21,15 @@
 #include "ui/pictures_area.h"
 #include "ui/scene_panel.h"
 #include "ui/sketch_actions.h"
+#include "ui/sketch_edits.h"
+#include "ui/snapshots_panel.h"
 #include "ui/status_strip.h"
 #include "ui/stop_keys.h"
 #include "ui/stop_panel.h"
 #include "ui/task_tabs.h"
 #include "ui/window_layout.h"
 #include "ui/workbench.h"
+#include "ui/world_panel.h"
 #include "widgets/mode_frame.h"
 
 class QStackedWidget;
@@ -51,6 +54,9 @@ class MainWindow final : public QMainWindow {
   JogPanel* jog() const { return m_jog; }
   MotionPanel* motion() const { return m_motion; }
   StopPanel* stopPanel() const { return m_stop; }
+  SnapshotsPanel* snapshots() const { return m_snapshots; }
+  WorldPanel* world() const { return m_world; }
+  SketchEdits* edits() const { return m_edits; }
   CamerasPanel* cameras() const { return m_cameras; }
   StatusStrip* strip() const { return m_strip; }
   NoticeBar* notices() const { return m_notices; }
@@ -91,6 +97,7 @@ class MainWindow final : public QMainWindow {
   Actions* m_actions;
   StopKeys* m_stop_keys;
   FileActions* m_files;
+  SketchEdits* m_edits;
   widgets::ModeFrame* m_frame;
   TaskTabs* m_tasks;
   QStackedWidget* m_pages;
@@ -107,6 +114,8 @@ class MainWindow final : public QMainWindow {
   MotionPanel* m_motion;
   StopPanel* m_stop;
   CamerasPanel* m_cameras;
+  SnapshotsPanel* m_snapshots;
+  WorldPanel* m_world;
   StatusStrip* m_strip;
   NoticeBar* m_notices;
   std::unique_ptr<WindowLayout> m_layout;

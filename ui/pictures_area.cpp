@@ -29,6 +29,9 @@ PicturesArea::PicturesArea(Workbench& bench, Actions& actions, Appearance& appea
     m_splitter->addWidget(pane(side));
     m_splitter->setStretchFactor(static_cast<int>(side), 1);
   }
+  m_third = new ThirdPane(bench, appearance, this);
+  m_splitter->addWidget(m_third);
+  m_splitter->setStretchFactor(2, 1);
   row->addWidget(m_splitter, 1);
   auto* line = new QHBoxLayout;
   line->setContentsMargins(4, 0, 4, 2);

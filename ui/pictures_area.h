@@ -7,6 +7,7 @@
 
 #include "ui/actions.h"
 #include "ui/snapshot_pane.h"
+#include "ui/third_pane.h"
 
 class QSplitter;
 
@@ -20,6 +21,7 @@ class PicturesArea final : public QWidget {
 
  public:
   PicturesArea(Workbench& bench, Actions& actions, Appearance& appearance, QWidget* parent = nullptr);
+  ThirdPane* third() const { return m_third; }
   SnapshotPane* pane(vision::PaneSide side) const { return m_panes[static_cast<int>(side)]; }
 
  private:
@@ -31,6 +33,7 @@ class PicturesArea final : public QWidget {
   Workbench& m_bench;
   Actions& m_actions;
   SnapshotPane* m_panes[2];
+  ThirdPane* m_third;
   QSplitter* m_splitter;
   ElidedLabel *m_hint, *m_numbers;
 };

@@ -23,6 +23,7 @@ SceneContents::SceneContents(vtkRenderer* renderer) : m_renderer(renderer) {
   m_grid.addTo(renderer);
   m_axes.addTo(renderer);
   m_sketch.addTo(renderer);
+  m_sketched_world.addTo(renderer);
   for (auto& frustum : m_frustums) frustum.addTo(renderer);
   setOpacity(m_opacity);
 }
@@ -85,6 +86,15 @@ void SceneContents::setSketch(const session::Document& document) {
   m_sketch.update(items);
 }
 
+void SceneContents::setWorld(const session::Document& document) {
+  std::vector<planning::WorldObject> bodies;
+  for (const auto& item : document.world()) {
+    if (item.hidden) continue;
+    for (auto& body : session::bodiesOf(item, false)) bodies.push_back(std::move(body));
+  }
+  m_sketched_world.update(bodies);
+}
+
 void SceneContents::setPlan(const session::Document& document) {
   if (!m_plan) return;
   m_trajectory = {};
@@ -144,6 +154,7 @@ Eigen::AlignedBox3d SceneContents::everything() const {
   if (m_world) add(*m_world);
   if (m_plan) add(*m_plan);
   add(m_sketch);
+  add(m_sketched_world);
   for (const auto& frustum : m_frustums) add(frustum);
   return box;
 }

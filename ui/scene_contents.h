@@ -33,6 +33,8 @@ class SceneContents final {
   /// @returns whether the robot looks any different.
   bool setJoints(const JointState* joints);
   void setSketch(const session::Document& document);
+  /// Bodies that were added to the world, and only those that are shown.
+  void setWorld(const session::Document& document);
   void setPlan(const session::Document& document);
   /// Shows the ghost there, unless the robot itself stands there.
   void setCursor(double t_s);
@@ -55,6 +57,7 @@ class SceneContents final {
   scene::GroundGridRep m_grid;
   scene::AxesRep m_axes;
   scene::SketchRep m_sketch;
+  scene::WorldRep m_sketched_world;
   std::array<scene::FrustumRep, 2> m_frustums;
   double m_opacity = 0.8;
   bool m_ghost = false;

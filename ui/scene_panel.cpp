@@ -92,6 +92,10 @@ void ScenePanel::bind(Actions& actions) {
   });
   connect(m_view, &widgets::SceneView::picked, this, [this](quint64 id) { m_bench.targeting().select(FeatureId{id}); });
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &ScenePanel::onSketch);
+  connect(&m_bench.targeting(), &session::TargetingController::worldChanged, this, [this] {
+    m_contents->setWorld(m_bench.document());
+    m_view->requestRender();
+  });
   connect(&m_bench.targeting(), &session::TargetingController::planChanged, this, &ScenePanel::onPlan);
   connect(&m_bench.play(), &session::PlayController::changed, this, [this] {
     m_contents->setCursor(m_bench.play().state().cursor_s);

@@ -1,5 +1,6 @@
 #include "ui/sketch_actions.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <QActionGroup>
@@ -14,8 +15,10 @@ namespace {
 constexpr std::pair<ActionId, ToolKind> kTools[] = {{ActionId::kToolSelect, ToolKind::kSelect},
                                                     {ActionId::kToolPoint, ToolKind::kPoint},
                                                     {ActionId::kToolLine, ToolKind::kLine},
+                                                    {ActionId::kToolPipe, ToolKind::kPipe},
                                                     {ActionId::kToolPlane, ToolKind::kPlane},
-                                                    {ActionId::kToolTriad, ToolKind::kTriad}};
+                                                    {ActionId::kToolTriad, ToolKind::kTriad},
+                                                    {ActionId::kToolMeasure, ToolKind::kMeasure}};
 
 }  // namespace
 
@@ -51,6 +54,8 @@ void SketchActions::bind() {
     const auto* item = m_targeting.document().item(m_targeting.document().selection().primary);
     if (item != nullptr) toggle(&TargetingController::setLocked, item->locked);
   });
+  on(ActionId::kGroup, [this] { m_targeting.groupSelected(true); });
+  on(ActionId::kUngroup, [this] { m_targeting.groupSelected(false); });
   auto* group = new QActionGroup(this);
   for (const auto& [id, kind] : kTools) {
     group->addAction(m_actions.at(id));
@@ -81,7 +86,14 @@ void SketchActions::refreshHistory() {
 void SketchActions::refreshSelection() {
   const bool any = m_targeting.document().selection().primary.valid();
   const QString why = any ? QString() : tr("Select a feature first.");
-  for (const auto id : {ActionId::kRename, ActionId::kDuplicate, ActionId::kHide, ActionId::kLock}) m_actions.setWhyNot(id, why);
+  for (const auto id : {ActionId::kRename, ActionId::kDuplicate, ActionId::kNote, ActionId::kNumbers, ActionId::kColour, ActionId::kHide,
+                        ActionId::kLock}) {
+    m_actions.setWhyNot(id, why);
+  }
+  const auto& selected = m_targeting.document().selection().items;
+  m_actions.setWhyNot(ActionId::kGroup, selected.size() > 1 ? QString() : tr("Select two features or more first."));
+  const bool grouped = std::any_of(selected.begin(), selected.end(), [this](FeatureId id) { return m_targeting.document().item(id)->group != 0; });
+  m_actions.setWhyNot(ActionId::kUngroup, grouped ? QString() : tr("What is selected is in no group."));
   const bool items = !m_targeting.document().items().empty();
   m_actions.setWhyNot(ActionId::kSelectAll, items ? QString() : tr("There is no feature."));
   m_actions.setWhyNot(ActionId::kDelete, any || m_targeting.tool() != ToolKind::kSelect ? QString() : why);

@@ -1,19 +1,32 @@
 #include "ui/sketch_watch.h"
 
+#include "session/tools/baseline_watch.h"
 #include "session/tools/calibration_watch.h"
 
 namespace longarm::ui {
 
 namespace {
 
-const QString kKey = QStringLiteral("calibration");
+const QString kKey = QStringLiteral("calibration"), kBaselineKey = QStringLiteral("baseline");
 
 }  // namespace
 
 SketchWatch::SketchWatch(Workbench& bench, NoticeBar& notices, QObject* parent)
     : QObject(parent), m_bench(bench), m_notices(notices) {
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &SketchWatch::refresh);
+  connect(&m_bench.targeting(), &session::TargetingController::panesChanged, this, &SketchWatch::refreshBaseline);
   refresh();
+  refreshBaseline();
+}
+
+// Told when the pair comes into the panes, before anything is picked in it.
+void SketchWatch::refreshBaseline() {
+  const auto left = m_bench.document().paneSnapshot(vision::PaneSide::kLeft), right = m_bench.document().paneSnapshot(vision::PaneSide::kRight);
+  const QString text = left && right && left != right ? QString::fromStdString(session::baselineWarning(left->view, right->view)) : QString();
+  if (text == m_baseline_said) return;
+  m_baseline_said = text;
+  if (text.isEmpty()) return m_notices.clear(kBaselineKey);
+  m_notices.post(kBaselineKey, text, {{tr("Understood"), {}}});
 }
 
 void SketchWatch::refresh() {

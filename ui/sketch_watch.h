@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// SketchWatch: tells the operator, beside everything else, when picks speak against the calibration.
+/// SketchWatch: tells the operator, beside everything else, when picks speak against the calibration, or a pair of pictures can measure little.
 
 #include <QObject>
 
@@ -20,9 +20,11 @@ class SketchWatch final : public QObject {
 
  private:
   void refresh();
+  void refreshBaseline();
 
   Workbench& m_bench;
   NoticeBar& m_notices;
+  QString m_baseline_said;
   QString m_said;                          // Shown, or answered.
 };
 

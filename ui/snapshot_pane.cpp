@@ -2,7 +2,6 @@
 
 #include <QButtonGroup>
 #include <QComboBox>
-#include <QDateTime>
 #include <QHBoxLayout>
 #include <QSignalBlocker>
 #include <QToolButton>
@@ -10,6 +9,7 @@
 
 #include "planning/world/workcell.h"
 #include "ui/elided_label.h"
+#include "ui/picture_text.h"
 #include "widgets/icon.h"
 
 namespace longarm::ui {
@@ -20,16 +20,11 @@ namespace {
 
 constexpr double kKeyTurn_rad = 0.0175, kKeyTurnFar_rad = 0.0873;   // 1 and 5 degrees
 
-QString timeOf(double wall_s) {
-  if (wall_s <= 0) return {};
-  return QDateTime::fromMSecsSinceEpoch(static_cast<qint64>(wall_s * 1000)).toString(QStringLiteral("HH:mm:ss"));
-}
-
 bool fromRobot(const vision::Snapshot& snapshot) { return snapshot.source == "live"; }
 
 QString titleOf(const vision::Snapshot& snapshot) {
   const QString name = QString::fromStdString(snapshot.view.name);
-  return fromRobot(snapshot) ? name + QStringLiteral("  ") + timeOf(snapshot.wall_time_s) : name;
+  return fromRobot(snapshot) ? name + QStringLiteral("  ") + pictureTime(snapshot.wall_time_s) : name;
 }
 
 }  // namespace
@@ -52,6 +47,7 @@ SnapshotPane::SnapshotPane(PaneSide side, Workbench& bench, Appearance& appearan
   });
   connect(&targeting, &session::TargetingController::snapshotsChanged, this, &SnapshotPane::refreshChooser);
   connect(&targeting, &session::TargetingController::overlayChanged, this, &SnapshotPane::refreshOverlay);
+  connect(m_canvas, &widgets::ImageCanvas::menuRequested, this, &SnapshotPane::menuRequested);
   connect(&m_bench, &Workbench::paneCameraChanged, this, [this](PaneSide changed) {
     if (changed == m_side) refreshPicture();
   });
@@ -183,7 +179,7 @@ void SnapshotPane::refreshPicture() {
     m_canvas->setCamera(snapshot->view.camera);
     m_canvas->setPicture(snapshot->image);
     const QString source = QString::fromStdString(snapshot->source);
-    m_info->setFullText(fromRobot(*snapshot) ? tr("taken at %1 by %2").arg(timeOf(snapshot->wall_time_s), QString::fromStdString(snapshot->view.name))
+    m_info->setFullText(fromRobot(*snapshot) ? tr("taken at %1 by %2").arg(pictureTime(snapshot->wall_time_s), QString::fromStdString(snapshot->view.name))
                                              : tr("file %1").arg(source));
   } else {
     m_canvas->clearPicture(emptyText());

@@ -44,6 +44,7 @@ class SnapshotPane final : public QFrame {
  Q_SIGNALS:
   void shownChanged();                             ///< Another picture, view or mode.
   void undistortedChanged(bool on);
+  void menuRequested(const QPoint& global_position);
 
  private:
   void buildHeader();

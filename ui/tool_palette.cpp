@@ -20,7 +20,10 @@ ToolPalette::ToolPalette(Actions& actions, QWidget* parent) : QFrame(parent) {
   };
   add(ActionId::kTakePair);
   column->addSpacing(10);
-  for (const auto id : {ActionId::kToolSelect, ActionId::kToolPoint, ActionId::kToolLine, ActionId::kToolPlane, ActionId::kToolTriad}) add(id);
+  for (const auto id : {ActionId::kToolSelect, ActionId::kToolPoint, ActionId::kToolLine, ActionId::kToolPipe, ActionId::kToolPlane, ActionId::kToolTriad,
+                        ActionId::kToolMeasure}) add(id);
+  column->addSpacing(10);
+  add(ActionId::kAddToWorld);
   column->addSpacing(10);
   for (const auto id : {ActionId::kUndo, ActionId::kRedo, ActionId::kDelete}) add(id);
   column->addStretch(1);

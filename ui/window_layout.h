@@ -15,7 +15,7 @@ namespace longarm::ui {
 /// A layout that cannot be used (other schema, damaged, off every screen) gives the factory layout.  GUI thread only.
 class WindowLayout final {
  public:
-  static constexpr int kSchema = 1;
+  static constexpr int kSchema = 2;
 
   /// All borrowed; they outlive this.  What stands now is the factory layout.
   /// @param docks The window that holds the docks; @param window the one on the screen (may be the same).

@@ -21,7 +21,8 @@ QString libraryFolder(const QString& autosave_folder) {
 
 Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
-      m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
+      m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs),
+      m_world(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
       m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
       m_lens(m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {

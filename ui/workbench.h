@@ -23,6 +23,7 @@
 #include "session/controllers/play_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
+#include "session/controllers/world_controller.h"
 #include "ui/live_pictures.h"
 #include "ui/robot_session.h"
 
@@ -50,6 +51,7 @@ class Workbench final : public QObject {
   RobotSession& robot() { return m_robot; }
   LivePictures& live() { return m_live; }
   session::TargetingController& targeting() { return m_targeting; }
+  session::WorldController& world() { return m_world; }
   session::MatchController& matches() { return m_matches; }
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
@@ -104,6 +106,7 @@ class Workbench final : public QObject {
   LivePictures m_live;
   session::TargetingController m_targeting;
   session::MatchController m_matches;
+  session::WorldController m_world;
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;

@@ -10,7 +10,7 @@ namespace longarm::session {
 namespace {
 
 std::string described(const SketchItem& item) {
-  return std::string(vision::toString(item.kind)) + " '" + item.name + "'";
+  return std::string(wordFor(item)) + " '" + item.name + "'";
 }
 
 /// An item that enters the list; undone, it leaves.
@@ -270,13 +270,28 @@ CommandPtr colourItem(const Document& document, FeatureId id, std::optional<std:
   return edited(document, id, "Colour", [&](SketchItem& item) { item.colour = colour; });
 }
 
+CommandPtr noteItem(const Document& document, FeatureId id, const std::string& note) {
+  return edited(document, id, "Note on", [&](SketchItem& item) { item.note = note; });
+}
+
+CommandPtr groupItems(const Document& document, const std::vector<FeatureId>& ids, bool together) {
+  if (together && ids.size() < 2) return nullptr;
+  const std::uint64_t group = together ? document.nextGroup() : 0;
+  std::vector<CommandPtr> commands;
+  for (const FeatureId id : ids) {
+    commands.push_back(edited(document, id, "Group", [&](SketchItem& item) { item.group = group; }));
+  }
+  return composite(together ? "Group " + std::to_string(ids.size()) + " features" : "Ungroup", std::move(commands));
+}
+
 CommandPtr duplicateItem(const Document& document, FeatureId id) {
   const SketchItem* item = document.item(id);
   if (item == nullptr) return nullptr;
   SketchItem copy = *item;
   copy.id = document.nextFeatureId();
-  copy.name = document.freeName(item->kind);
+  copy.name = document.freeName(item->kind, item->pipe);
   copy.locked = false;
+  copy.group = 0;
   return std::make_unique<AddItem>(std::move(copy), static_cast<std::size_t>(document.indexOf(id)) + 1,
                                    "Duplicate " + described(*item));
 }
@@ -296,7 +311,7 @@ CommandPtr addSnapshots(const Document& document, std::vector<SnapshotPtr> snaps
 
 CommandPtr removeSnapshot(const Document& document, SnapshotId id) {
   auto command = std::make_unique<RemoveSnapshot>(document, id);
-  if (command->empty()) return nullptr;
+  if (command->empty() || document.pinned(id)) return nullptr;
   return command;
 }
 

@@ -24,7 +24,10 @@ CommandPtr renameItem(const Document& document, FeatureId id, const std::string&
 CommandPtr hideItem(const Document& document, FeatureId id, bool hidden);
 CommandPtr lockItem(const Document& document, FeatureId id, bool locked);
 CommandPtr colourItem(const Document& document, FeatureId id, std::optional<std::uint32_t> colour);
-/// Copy with its own id and name.
+CommandPtr noteItem(const Document& document, FeatureId id, const std::string& note);
+/// Makes one group of them (two or more), or takes them out of theirs.
+CommandPtr groupItems(const Document& document, const std::vector<FeatureId>& ids, bool together);
+/// Copy with its own id and name, in no group.
 CommandPtr duplicateItem(const Document& document, FeatureId id);
 /// Same item elsewhere in the list.
 CommandPtr moveItem(const Document& document, FeatureId id, std::size_t index);
@@ -32,7 +35,7 @@ CommandPtr moveItem(const Document& document, FeatureId id, std::size_t index);
 /// Adds pictures to the library and shows them: the first left, the second right.  A single picture goes to `side`.
 CommandPtr addSnapshots(const Document& document, std::vector<SnapshotPtr> snapshots,
                         PaneSide side = PaneSide::kLeft);
-/// Removes a picture with every pick made in it.
+/// Removes a picture with every pick made in it.  Null when it does not exist or is pinned.
 CommandPtr removeSnapshot(const Document& document, SnapshotId id);
 /// Shows a picture of the library; when the other pane has it the two change places.
 CommandPtr showSnapshot(const Document& document, PaneSide side, SnapshotId id);

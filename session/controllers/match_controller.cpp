@@ -22,6 +22,8 @@ Result<Matches> suggestion(const SnapshotPtr& from, const Eigen::Vector2d& pixel
 MatchController::MatchController(TargetingController& targeting, JobRunner& jobs, QObject* parent)
     : QObject(parent), m_targeting(targeting), m_jobs(jobs) {
   connect(&m_targeting, &TargetingController::overlayChanged, this, &MatchController::refresh);
+  // Another sketch may use the same numbers for other pictures.
+  connect(&m_targeting, &TargetingController::snapshotsChanged, this, [this] { m_known.clear(); });
 }
 
 bool MatchController::known(const MatchWish& wish) const {

@@ -17,6 +17,14 @@ struct PlanController::Progress {
   std::string text;
 };
 
+namespace {
+
+const std::string& rootFrame(const planning::Workcell& workcell) {
+  return workcell.model->links()[static_cast<std::size_t>(workcell.model->rootLink())].name;
+}
+
+}  // namespace
+
 PlanController::PlanController(Document& document, JobRunner& jobs, QObject* parent)
     : QObject(parent), m_document(document), m_jobs(jobs) {
   m_timer.setInterval(50);
@@ -54,7 +62,7 @@ QString PlanController::whyNot(const planning::MacroInfo& info) const {
     }
     const Measurement& measured = m_document.measurement(selected);
     if (!measured.feature) return QString::fromStdString(measured.reason);
-    const std::string& root = workcell->model->links()[static_cast<std::size_t>(workcell->model->rootLink())].name;
+    const std::string& root = rootFrame(*workcell);
     if (measured.feature->parent != root) {
       return tr("'%1' is measured in frame %2, the robot stands in %3. Measure it in pictures of the robot's cameras.")
           .arg(QString::fromStdString(item->name), QString::fromStdString(measured.feature->parent),
@@ -151,6 +159,8 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
   context.workcell = workcell.get();
   context.start = workcell->model->neutral();
   workcell->model->assign(*m_joints(), context.start);
+  const FeatureId target = info.takes ? m_document.selection().primary : FeatureId{};
+  context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), target);
   context.arguments = arguments(QString::fromStdString(info.name));
   context.avoid = avoid;
   context.seed = m_seed;
@@ -163,7 +173,7 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, info.takes ? m_document.selection().primary : FeatureId{}, {}, std::move(avoid)};
+  Request request{++m_generation, info.name, target, {}, std::move(avoid), m_document.world()};
   if (info.takes) request.feature = *m_document.selectedFeature();
   m_progress = 0;
   m_progress_text.clear();
@@ -271,6 +281,9 @@ Status PlanController::checkFresh(const JointState& now, double tolerance) const
   const planning::Plan& plan = m_document.plan()->plan;
   if (!plan.ok()) return {ErrorCode::kRefused, "The plan failed: " + plan.reason};
   if (const Status feature = checkFeature(); !feature) return feature;
+  if (m_planned && m_planned->world != m_document.world()) {
+    return {ErrorCode::kStale, "The sketched world was changed since the plan was made. Plan again."};
+  }
   if (plan.trajectory.empty()) return {ErrorCode::kRefused, "The plan has no motion."};
   const auto& names = plan.trajectory.joint_names;
   const auto measured = now.positionsOf(names);

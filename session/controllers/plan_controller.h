@@ -100,6 +100,7 @@ class PlanController final : public QObject {
     FeatureId item;
     std::optional<vision::Feature> feature;
     std::vector<Eigen::VectorXd> avoid;
+    std::vector<WorldItem> world;
   };
 
   void rebuildMacros();

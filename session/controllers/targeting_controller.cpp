@@ -2,7 +2,10 @@
 
 #include <utility>
 
-#include "session/commands/sketch_commands.h"
+#include "session/commands/world_commands.h"
+#include "session/tools/hit_test.h"
+#include "session/tools/pick_editor.h"
+#include "session/tools/third_view.h"
 
 namespace longarm::session {
 
@@ -29,8 +32,13 @@ TargetingController::~TargetingController() {
 void TargetingController::changed(const Change& change) {
   switch (change.kind) {
     case ChangeKind::kSnapshotAdded:
-    case ChangeKind::kSnapshotRemoved: Q_EMIT snapshotsChanged(); break;
+    case ChangeKind::kSnapshotRemoved:
+      if (!m_document.snapshot(m_third)) setThird({});
+      Q_EMIT snapshotsChanged();
+      break;
     case ChangeKind::kPaneChanged: Q_EMIT panesChanged(); break;
+    case ChangeKind::kPinsChanged: Q_EMIT snapshotsChanged(); break;
+    case ChangeKind::kWorldChanged: Q_EMIT worldChanged(); break;
     case ChangeKind::kItemAdded:
     case ChangeKind::kItemChanged:
     case ChangeKind::kItemRemoved: Q_EMIT featuresChanged(); break;
@@ -47,11 +55,13 @@ void TargetingController::changed(const Change& change) {
       break;
     case ChangeKind::kReset:
       m_path.clear();
+      setThird({});
       Q_EMIT snapshotsChanged();
       Q_EMIT panesChanged();
       Q_EMIT selectionChanged();
       Q_EMIT featuresChanged();
       Q_EMIT planChanged();
+      Q_EMIT worldChanged();
       Q_EMIT overlayChanged();
       break;
   }
@@ -75,6 +85,35 @@ vision::Overlay TargetingController::overlay(const vision::View& view) const {
   OverlayOptions options;
   options.path_points = &m_path;
   return buildOverlay(m_document, view, options);
+}
+
+void TargetingController::setThird(SnapshotId id) {
+  const SnapshotId wanted = m_document.snapshot(id) ? id : SnapshotId{};
+  if (wanted == m_third) return;
+  m_third = wanted;
+  Q_EMIT thirdChanged();
+}
+
+vision::Overlay TargetingController::thirdOverlay() const {
+  OverlayOptions options;
+  options.path_points = &m_path;
+  vision::Overlay overlay = buildOverlay(m_document, m_third, options);
+  const Handle active = m_tools.activeHandle();
+  const FeatureId shown = active.valid() ? active.item : m_document.selection().primary;
+  addThirdView(m_document, m_document.item(shown), active.valid() ? active.vertex : 0, m_third, &overlay);
+  return overlay;
+}
+
+Status TargetingController::pickInThird(const Eigen::Vector2d& pixel) {
+  const SketchItem* item = m_document.item(m_document.selection().primary);
+  if (item == nullptr) return {ErrorCode::kRefused, "Select the feature that is to be marked in the third picture first."};
+  if (item->locked) return {ErrorCode::kRefused, "'" + item->name + "' is locked. Unlock it in the list to move it."};
+  const int vertex = nearestPredicted(m_document, *item, m_third, pixel);
+  if (vertex < 0) return {ErrorCode::kRefused, "'" + item->name + "' is to be marked in both panes before a third picture can check it."};
+  SketchItem after = *item;
+  after.setPick(m_third, vertex, {pixel, PickState::kReleased});
+  push(replaceItem(m_document, std::move(after), "Mark '" + item->name + "' in the third picture"));
+  return {};
 }
 
 void TargetingController::select(FeatureId id) { select(id.valid() ? Selection::of(id) : Selection{}); }
@@ -109,6 +148,42 @@ void TargetingController::removeSelected() {
 
 void TargetingController::showSnapshot(PaneSide side, SnapshotId id) { push(session::showSnapshot(m_document, side, id)); }
 void TargetingController::removeSnapshot(SnapshotId id) { push(session::removeSnapshot(m_document, id)); }
+
+void TargetingController::setNote(FeatureId id, const QString& note) {
+  push(noteItem(m_document, id, note.trimmed().left(200).toStdString()));
+}
+
+void TargetingController::groupSelected(bool together) {
+  const auto& items = m_document.selection().items;
+  push(groupItems(m_document, {items.begin(), items.end()}, together));
+}
+
+Status TargetingController::moveVertex(FeatureId id, int vertex, const Eigen::Vector3d& xyz) {
+  const SketchItem* item = m_document.item(id);
+  if (item == nullptr) return {ErrorCode::kNotFound, "That feature is gone."};
+  if (item->locked) return {ErrorCode::kRefused, "'" + item->name + "' is locked. Unlock it in the list to move it."};
+  auto after = withVertexAt(m_document, *item, vertex, xyz);
+  if (!after) return after.error();
+  if (*after != *item) push(replaceItem(m_document, std::move(*after), "Move '" + item->name + "' by numbers"));
+  return {};
+}
+
+Status TargetingController::movePick(FeatureId id, SnapshotId snapshot, int vertex, const Eigen::Vector2d& pixel) {
+  const SketchItem* item = m_document.item(id);
+  if (item == nullptr) return {ErrorCode::kNotFound, "That feature is gone."};
+  if (item->locked) return {ErrorCode::kRefused, "'" + item->name + "' is locked. Unlock it in the list to move it."};
+  auto after = withPickAt(m_document, *item, snapshot, vertex, pixel);
+  if (!after) return after.error();
+  if (*after != *item) push(replaceItem(m_document, std::move(*after), "Move '" + item->name + "' by numbers"));
+  return {};
+}
+
+FeatureId TargetingController::itemAt(PaneSide side, const Eigen::Vector2d& pixel, double radius_px) const {
+  const auto hit = hitTest(m_document, side, pixel, radius_px);
+  return hit ? hit->handle.item : FeatureId{};
+}
+
+void TargetingController::setPinned(SnapshotId id, bool pinned) { push(pinSnapshot(m_document, id, pinned)); }
 
 void TargetingController::undo() {
   if (canUndo()) m_history.undo();

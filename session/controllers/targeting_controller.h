@@ -36,6 +36,13 @@ class TargetingController final : public QObject {
   bool key(vision::SketchKey key, const vision::KeyModifiers& modifiers = {}) { return m_tools.key(key, modifiers); }
 
   vision::Overlay overlay(PaneSide side) const;
+  /// A third picture beside the panes; invalid: none.  No edit: nothing of it is kept.
+  SnapshotId third() const { return m_third; }
+  void setThird(SnapshotId id);
+  /// Its sketch, with the curves of the vertex that is worked on and a flag at picks that are off.
+  vision::Overlay thirdOverlay() const;
+  /// Marks the vertex that belongs there in the third picture.  @returns why it cannot.
+  Status pickInThird(const Eigen::Vector2d& pixel);
   /// Features and path in a live picture.
   vision::Overlay overlay(const vision::View& view) const;
   QString hint() const { return QString::fromStdString(m_tools.hint()); }
@@ -53,11 +60,19 @@ class TargetingController final : public QObject {
   void setHidden(FeatureId id, bool hidden);
   void setLocked(FeatureId id, bool locked);
   void setColour(FeatureId id, std::optional<std::uint32_t> rgb);
+  void setNote(FeatureId id, const QString& note);
+  void groupSelected(bool together);
+  /// By numbers [m], [raw px].  @returns why not: locked, gone, or not to be seen there.
+  Status moveVertex(FeatureId id, int vertex, const Eigen::Vector3d& xyz);
+  Status movePick(FeatureId id, SnapshotId snapshot, int vertex, const Eigen::Vector2d& pixel);
+  /// What lies under a pixel of a pane's snapshot; invalid: nothing.
+  FeatureId itemAt(PaneSide side, const Eigen::Vector2d& pixel, double radius_px) const;
   void duplicate(FeatureId id);
   void remove(FeatureId id);
   void removeSelected();
   void showSnapshot(PaneSide side, SnapshotId id);
   void removeSnapshot(SnapshotId id);
+  void setPinned(SnapshotId id, bool pinned);
 
   bool canUndo() const { return !m_tools.busy() && m_history.canUndo(); }
   bool canRedo() const { return !m_tools.busy() && m_history.canRedo(); }
@@ -74,7 +89,9 @@ class TargetingController final : public QObject {
   void featuresChanged();                          ///< rows() differ: items, numbers or selection.
   void selectionChanged();
   void panesChanged();                             ///< Which picture is in which pane.
-  void snapshotsChanged();                         ///< The library.
+  void snapshotsChanged();                         ///< The library and its pins.
+  void worldChanged();                             ///< Bodies added to the world.
+  void thirdChanged();                             ///< Which picture is the third.
   void planChanged();
   void historyChanged();                           ///< canUndo, canRedo, labels, isClean.
   void liveMeasureChanged();                       ///< While dragging, at each move.
@@ -88,6 +105,7 @@ class TargetingController final : public QObject {
   ToolHost m_tools;
   int m_observer = 0;
   std::vector<Eigen::Vector3d> m_path;
+  SnapshotId m_third;
 };
 
 }  // namespace longarm::session

@@ -5,12 +5,15 @@
 #include "core/require.h"
 #include "core/text.h"
 #include "vision/stereo/measure.h"
+#include "vision/stereo/pipe.h"
 
 namespace longarm::session {
 
 namespace {
 
-std::string vertexWord(vision::FeatureKind kind, int vertex) {
+std::string vertexWord(const SketchItem& item, int vertex) {
+  const vision::FeatureKind kind = item.kind;
+  if (item.pipe) return std::string(vertex < 2 ? "the first" : "the second") + " outline";
   if (kind == vision::FeatureKind::kPoint) return "it";
   if (kind == vision::FeatureKind::kLine) return "end " + std::to_string(vertex + 1);
   return "corner " + std::to_string(vertex + 1);
@@ -27,7 +30,7 @@ const char* kindTitle(vision::FeatureKind kind) {
 }
 
 std::string offPicture(const SketchItem& item, int vertex, const vision::View& view, const Eigen::Vector2d& pixel) {
-  return "'" + item.name + "' is not measured: " + vertexWord(item.kind, vertex) + " is marked at (" +
+  return "'" + item.name + "' is not measured: " + vertexWord(item, vertex) + " is marked at (" +
          formatFixed(pixel.x(), 1) + ", " + formatFixed(pixel.y(), 1) + "), outside picture " + view.name + " (" +
          std::to_string(view.camera.width) + " x " + std::to_string(view.camera.height) +
          " px). Drag it onto the picture.";
@@ -35,14 +38,14 @@ std::string offPicture(const SketchItem& item, int vertex, const vision::View& v
 
 std::string tooFewPictures(const SketchItem& item, int vertex, std::size_t count) {
   const std::string where = count == 0 ? "in no picture yet" : "in one picture only";
-  return "'" + item.name + "' is not measured: " + vertexWord(item.kind, vertex) + " is marked " + where +
+  return "'" + item.name + "' is not measured: " + vertexWord(item, vertex) + " is marked " + where +
          ". Mark it in two pictures.";
 }
 
 }  // namespace
 
 bool operator==(const DocumentState& a, const DocumentState& b) {
-  return a.snapshots == b.snapshots && a.panes == b.panes && a.items == b.items;
+  return a.snapshots == b.snapshots && a.panes == b.panes && a.items == b.items && a.world == b.world && a.pinned == b.pinned;
 }
 
 std::uint64_t hashOf(const DocumentState& state) {
@@ -55,6 +58,8 @@ std::uint64_t hashOf(const DocumentState& state) {
   for (const auto& snapshot : state.snapshots) mix(snapshot->id.value);
   for (const SnapshotId id : state.panes) mix(id.value + 0x51ULL);
   for (const auto& item : state.items) mix(hashOf(item));
+  for (const auto& item : state.world) mix(hashOf(item));
+  for (const SnapshotId id : state.pinned) mix(id.value + 0x77ULL);
   return hash;
 }
 
@@ -86,7 +91,30 @@ const Measurement& Document::measurement(FeatureId id) const {
   return found->second;
 }
 
+// Ends of an outline in different pictures are different places: only whole outlines go together.
+Measurement Document::measurePipe(const SketchItem& item) const {
+  std::vector<vision::PipeSighting> sightings;
+  for (const auto& [id, list] : item.picks) {
+    const SnapshotPtr picture = snapshot(id);
+    if (!picture || !item.placedIn(id)) continue;
+    for (int vertex = 0; vertex < 4; ++vertex) {
+      const Eigen::Vector2d& pixel = item.pick(id, vertex)->pixel;
+      if (!picture->view.camera.containsPixel(pixel, 0.5)) return {{}, offPicture(item, vertex, picture->view, pixel)};
+    }
+    sightings.push_back({&picture->view, item.pick(id, 0)->pixel, item.pick(id, 1)->pixel, item.pick(id, 2)->pixel,
+                         item.pick(id, 3)->pixel});
+  }
+  if (sightings.size() < 2) {
+    return {{}, "'" + item.name + "' is not measured: both outlines are marked in " +
+                    (sightings.empty() ? "no picture yet" : "one picture only") + ". Mark both in two pictures."};
+  }
+  auto feature = vision::estimatePipe(item.name, sightings);
+  if (!feature) return {{}, feature.error().message};
+  return {std::move(*feature), {}};
+}
+
 Measurement Document::measure(const SketchItem& item) const {
+  if (item.pipe) return measurePipe(item);
   std::vector<std::vector<vision::Sighting>> vertices(static_cast<std::size_t>(vision::vertexCount(item.kind)));
   for (const auto& [id, list] : item.picks) {
     const SnapshotPtr picture = snapshot(id);
@@ -116,9 +144,20 @@ const vision::Feature* Document::selectedFeature() const {
   return found != m_measurements.end() && found->second.feature ? &*found->second.feature : nullptr;
 }
 
-std::string Document::freeName(vision::FeatureKind kind) const {
+const WorldItem* Document::worldItem(WorldItemId id) const {
+  const auto found = std::find_if(m_state.world.begin(), m_state.world.end(), [id](const WorldItem& item) { return item.id == id; });
+  return found == m_state.world.end() ? nullptr : &*found;
+}
+
+std::uint64_t Document::nextGroup() const {
+  std::uint64_t highest = 0;
+  for (const auto& item : m_state.items) highest = std::max(highest, item.group);
+  return highest + 1;
+}
+
+std::string Document::freeName(vision::FeatureKind kind, bool pipe) const {
   for (std::size_t number = 1;; ++number) {
-    const std::string name = std::string(kindTitle(kind)) + " " + std::to_string(number);
+    const std::string name = std::string(pipe ? "Pipe" : kindTitle(kind)) + " " + std::to_string(number);
     const bool taken = std::any_of(m_state.items.begin(), m_state.items.end(),
                                    [&](const SketchItem& item) { return item.name == name; });
     if (!taken) return name;
@@ -202,6 +241,35 @@ void Document::replaceItem(const SketchItem& item) {
   notify(ChangeKind::kItemChanged, copy.id.value);
 }
 
+void Document::insertWorldItem(std::size_t index, WorldItem item) {
+  LONGARM_REQUIRE(item.id.valid() && worldItem(item.id) == nullptr, "world item without a new id");
+  const WorldItemId id = item.id;
+  index = std::min(index, m_state.world.size());
+  m_next_world = std::max(m_next_world, id.value + 1);
+  m_state.world.insert(m_state.world.begin() + static_cast<std::ptrdiff_t>(index), std::move(item));
+  notify(ChangeKind::kWorldChanged, id.value);
+}
+
+void Document::removeWorldItem(WorldItemId id) {
+  const WorldItem* item = worldItem(id);
+  LONGARM_REQUIRE(item != nullptr, "no world item " + std::to_string(id.value));
+  m_state.world.erase(m_state.world.begin() + (item - m_state.world.data()));
+  notify(ChangeKind::kWorldChanged, id.value);
+}
+
+void Document::replaceWorldItem(const WorldItem& item) {
+  const WorldItem* before = worldItem(item.id);
+  LONGARM_REQUIRE(before != nullptr, "no world item " + std::to_string(item.id.value));
+  const WorldItem copy = item;  // The argument may live in the list itself.
+  m_state.world[static_cast<std::size_t>(before - m_state.world.data())] = copy;
+  notify(ChangeKind::kWorldChanged, copy.id.value);
+}
+
+void Document::setPinned(SnapshotId id, bool pinned) {
+  const bool changed = pinned ? m_state.pinned.insert(id).second : m_state.pinned.erase(id) > 0;
+  if (changed) notify(ChangeKind::kPinsChanged, id.value);
+}
+
 void Document::reset(DocumentState state) {
   m_state = std::move(state);
   m_measurements.clear();
@@ -212,6 +280,7 @@ void Document::reset(DocumentState state) {
     m_next_feature = std::max(m_next_feature, item.id.value + 1);
   }
   for (const auto& snapshot : m_state.snapshots) m_next_snapshot = std::max(m_next_snapshot, snapshot->id.value + 1);
+  for (const auto& item : m_state.world) m_next_world = std::max(m_next_world, item.id.value + 1);
   notify(ChangeKind::kReset);
 }
 

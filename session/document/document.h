@@ -17,6 +17,7 @@
 #include "planning/motion/plan.h"
 #include "planning/world/workcell.h"
 #include "session/document/sketch_item.h"
+#include "session/document/world_item.h"
 #include "vision/sketch/pointer_event.h"
 #include "vision/snapshot/view.h"
 
@@ -37,6 +38,8 @@ enum class ChangeKind {
   kItemAdded,        ///< id: FeatureId
   kItemChanged,      ///< id: FeatureId; picks, name, visibility, lock or colour
   kItemRemoved,      ///< id: FeatureId
+  kWorldChanged,     ///< id: WorldItemId
+  kPinsChanged,      ///< id: SnapshotId
   kSelectionChanged,
   kPlanChanged,
   kWorkcellChanged,
@@ -70,6 +73,8 @@ struct DocumentState {
   std::vector<SnapshotPtr> snapshots;      ///< Library order; compared by identity, for they never change.
   std::array<SnapshotId, 2> panes;         ///< By PaneSide; invalid: empty pane.
   std::vector<SketchItem> items;           ///< List order.
+  std::vector<WorldItem> world;            ///< Geometry added to the workcell's world; list order.
+  std::set<SnapshotId> pinned;             ///< Pictures that must not be deleted.
 
   friend bool operator==(const DocumentState& a, const DocumentState& b);
   friend bool operator!=(const DocumentState& a, const DocumentState& b) { return !(a == b); }
@@ -115,11 +120,17 @@ class Document {
   const std::optional<PlanRecord>& plan() const { return m_plan; }
   const std::shared_ptr<const planning::Workcell>& workcell() const { return m_workcell; }
 
+  const std::vector<WorldItem>& world() const { return m_state.world; }
+  const WorldItem* worldItem(WorldItemId id) const;          ///< Null if there is none.
+  bool pinned(SnapshotId id) const { return m_state.pinned.count(id) != 0; }
+
   /// Ids that the next additions should use; never given twice in one session.
   SnapshotId nextSnapshotId() const { return {m_next_snapshot}; }
   FeatureId nextFeatureId() const { return {m_next_feature}; }
+  WorldItemId nextWorldId() const { return {m_next_world}; }
+  std::uint64_t nextGroup() const;                           ///< A number that no group has.
   /// "Line 3": the first number that no item of this kind bears.
-  std::string freeName(vision::FeatureKind kind) const;
+  std::string freeName(vision::FeatureKind kind, bool pipe = false) const;
 
   /// Calls back after each change, on the thread that made it.  @returns a handle for unobserve().
   int observe(std::function<void(const Change&)> observer);
@@ -133,6 +144,10 @@ class Document {
   void insertItem(std::size_t index, SketchItem item);
   void removeItem(FeatureId id);                             ///< Leaves the selection too.
   void replaceItem(const SketchItem& item);                  ///< @pre an item of its id exists
+  void insertWorldItem(std::size_t index, WorldItem item);
+  void removeWorldItem(WorldItemId id);
+  void replaceWorldItem(const WorldItem& item);              ///< @pre an item of its id exists
+  void setPinned(SnapshotId id, bool pinned);
   void reset(DocumentState state);                           ///< A file was opened.
   /// @}
 
@@ -147,13 +162,14 @@ class Document {
  private:
   void notify(ChangeKind kind, std::uint64_t id = 0);
   void remeasure(const SketchItem& item);
+  Measurement measurePipe(const SketchItem& item) const;
 
   DocumentState m_state;
   std::map<FeatureId, Measurement> m_measurements;
   Selection m_selection;
   std::optional<PlanRecord> m_plan;
   std::shared_ptr<const planning::Workcell> m_workcell;
-  std::uint64_t m_next_snapshot = 1, m_next_feature = 1, m_next_plan = 1;
+  std::uint64_t m_next_snapshot = 1, m_next_feature = 1, m_next_world = 1, m_next_plan = 1;
   std::map<int, std::function<void(const Change&)>> m_observers;
   int m_next_observer = 1;
 };

@@ -109,6 +109,17 @@ json itemJson(const SketchItem& item) {
   json out = {{"id", item.id.value}, {"kind", vision::toString(item.kind)}, {"name", item.name},
               {"hidden", item.hidden}, {"locked", item.locked}, {"picks", std::move(picks)}};
   if (item.colour) out["colour"] = *item.colour;
+  if (item.pipe) out["pipe"] = true;
+  if (item.group != 0) out["group"] = item.group;
+  if (!item.note.empty()) out["note"] = item.note;
+  return out;
+}
+
+json worldJson(const WorldItem& item) {
+  json out = {{"id", item.id.value}, {"kind", toString(item.kind)}, {"name", item.name}, {"pose", poseJson(item.parent, item.X_WO)},
+              {"size", numbers(item.size.data(), 3)},
+              {"margin_m", item.margin_m}, {"hidden", item.hidden}, {"obstacle", item.obstacle}, {"source", item.source.value}};
+  for (const auto& point : item.points) out["points"].push_back(numbers(point.data(), 3));
   return out;
 }
 
@@ -266,6 +277,10 @@ SketchItem readItem(const json& value, const std::set<std::uint64_t>& snapshots,
   item.name = text(need(value, "name", where), where + ".name");
   item.hidden = flag(value, "hidden", where);
   item.locked = flag(value, "locked", where);
+  item.pipe = flag(value, "pipe", where);
+  if (item.pipe && item.kind != vision::FeatureKind::kLine) fault(where + ".pipe", "is true of a " + kind + ", only lines have it");
+  if (value.contains("group")) item.group = idNumber(value["group"], where + ".group", true);
+  if (value.contains("note")) item.note = text(value["note"], where + ".note");
   if (value.contains("colour")) {
     item.colour = static_cast<std::uint32_t>(idNumber(value["colour"], where + ".colour", true) & 0xffffffU);
   }
@@ -276,15 +291,70 @@ SketchItem readItem(const json& value, const std::set<std::uint64_t>& snapshots,
     const std::uint64_t id = idNumber(need(entry, "snapshot", here), here + ".snapshot", false);
     if (snapshots.count(id) == 0) fault(here + ".snapshot", "is " + std::to_string(id) + ", which the file does not hold");
     const std::uint64_t vertex = idNumber(need(entry, "vertex", here), here + ".vertex", true);
-    if (vertex >= static_cast<std::uint64_t>(vision::vertexCount(item.kind))) {
+    if (vertex >= static_cast<std::uint64_t>(item.vertices())) {
       fault(here + ".vertex", "is " + std::to_string(vertex) + ", a " + kind + " has " +
-                                  std::to_string(vision::vertexCount(item.kind)));
+                                  std::to_string(item.vertices()));
     }
     const auto pixel = vectorOf<Eigen::VectorXd>(need(entry, "pixel", here), 2, here + ".pixel");
     item.setPick({id}, static_cast<int>(vertex),
                  {pixel, stateFrom(text(need(entry, "state", here), here + ".state"), here + ".state"), readPickSigma(entry, here)});
   }
   return item;
+}
+
+const json& listIn(const json& root, const char* key, std::size_t limit) {
+  const json& list = need(root, key, "the file");
+  if (!list.is_array()) fault(key, "is not a list");
+  if (list.size() > limit) fault(key, "has " + std::to_string(list.size()) + " entries, at most " + std::to_string(limit));
+  return list;
+}
+
+void readWorldPose(const json& value, const std::string& where, WorldItem& item) {
+  vision::View frame;
+  readPose(value, where, frame);
+  item.parent = frame.parent;
+  item.X_WO = frame.X_WC;
+}
+
+WorldItem readWorldItem(const json& value, const std::string& where) {
+  WorldItem item;
+  item.id = {idNumber(need(value, "id", where), where + ".id", false)};
+  const std::string kind = text(need(value, "kind", where), where + ".kind");
+  const auto found = worldKindFrom(kind);
+  if (!found) fault(where + ".kind", "is \"" + kind + "\", expected box, slab, pipe or points");
+  item.kind = *found;
+  item.name = text(need(value, "name", where), where + ".name");
+  readWorldPose(need(value, "pose", where), where + ".pose", item);
+  item.size = vectorOf<Eigen::VectorXd>(need(value, "size", where), 3, where + ".size");
+  item.margin_m = number(need(value, "margin_m", where), where + ".margin_m");
+  item.hidden = flag(value, "hidden", where);
+  item.obstacle = flag(value, "obstacle", where);
+  item.source = {idNumber(need(value, "source", where), where + ".source", true)};
+  if (value.contains("points")) {
+    const json& points = value["points"];
+    if (!points.is_array() || points.size() > kMaxItems) fault(where + ".points", "is not a list, or too long");
+    for (const auto& point : points) item.points.push_back(vectorOf<Eigen::VectorXd>(point, 3, where + ".points"));
+  }
+  if (const Status checked = checkWorldItem(item); !checked) fault(where, checked.error().message);
+  return item;
+}
+
+void readWorld(const json& root, const std::set<std::uint64_t>& snapshots, DocumentState& state) {
+  std::set<std::uint64_t> ids;
+  if (root.contains("world")) {
+    const json& world = listIn(root, "world", kMaxItems);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      const std::string where = "world[" + std::to_string(i) + "]";
+      state.world.push_back(readWorldItem(world[i], where));
+      if (!ids.insert(state.world.back().id.value).second) fault(where + ".id", "is there twice");
+    }
+  }
+  if (!root.contains("pinned")) return;
+  for (const auto& entry : listIn(root, "pinned", kMaxSnapshots)) {
+    const std::uint64_t id = idNumber(entry, "pinned", false);
+    if (snapshots.count(id) == 0) fault("pinned", "names snapshot " + std::to_string(id) + ", which the file does not hold");
+    state.pinned.insert({id});
+  }
 }
 
 /// Nesting of the text, before anything is built from it.
@@ -305,13 +375,6 @@ int depthOf(const std::string& content) {
     }
   }
   return deepest;
-}
-
-const json& listIn(const json& root, const char* key, std::size_t limit) {
-  const json& list = need(root, key, "the file");
-  if (!list.is_array()) fault(key, "is not a list");
-  if (list.size() > limit) fault(key, "has " + std::to_string(list.size()) + " entries, at most " + std::to_string(limit));
-  return list;
 }
 
 DocumentState readState(const json& root, const fs::path& folder) {
@@ -337,6 +400,7 @@ DocumentState readState(const json& root, const fs::path& folder) {
     if (id != 0 && ids.count(id) == 0) fault("panes", "names snapshot " + std::to_string(id) + ", which the file does not hold");
     state.panes[i] = {id};
   }
+  readWorld(root, ids, state);
   return state;
 }
 
@@ -359,6 +423,8 @@ Status saveSketch(const std::string& folder, const DocumentState& state) {
     root["snapshots"].push_back(snapshotJson(*snapshot, picture));
   }
   for (const auto& item : state.items) root["items"].push_back(itemJson(item));
+  for (const auto& item : state.world) root["world"].push_back(worldJson(item));
+  for (const SnapshotId id : state.pinned) root["pinned"].push_back(id.value);
   // Replaces bytes that are no UTF-8: a name from a file must not make saving impossible.
   const std::string content = root.dump(1, ' ', false, json::error_handler_t::replace);
   if (const Status saved = writeFileAtomically((fs::path(folder) / kSketchFileName).string(), content); !saved) return saved;

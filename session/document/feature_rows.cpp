@@ -25,6 +25,7 @@ void fillTexts(FeatureRow& row) {
   row.plus_minus_text = formatFixed(row.plus_minus * 1000, 1);
   row.miss_text = formatFixed(row.miss * 1000, 1);
   if (row.length) row.length_text = millimetreText(*row.length, *row.length_plus_minus);
+  if (row.radius) row.length_text += ", r " + millimetreText(*row.radius, *row.radius_plus_minus);
   if (row.size) {
     const auto mm = [&](int axis) { return formatFixed((*row.size)[axis] * 1000, 0); };
     row.length_text = mm(0) + " \u00d7 " + mm(1) + " \u00d7 " + millimetreText((*row.size)[2], 0);
@@ -59,6 +60,10 @@ void fillNumbers(FeatureRow& row, const vision::Feature& feature) {
     row.length = feature.length();
     row.length_plus_minus = plusMinus95(feature.lengthSigma());
   }
+  if (feature.pipe) {
+    row.radius = feature.pipe->radius;
+    row.radius_plus_minus = plusMinus95(feature.pipe->radius_sigma);
+  }
   if (feature.box) {
     row.size = feature.box->size;
     row.xyz = feature.box->X_WB.translation();
@@ -77,6 +82,9 @@ FeatureRow featureRow(const SketchItem& item, const Measurement& measurement) {
   row.hidden = item.hidden;
   row.locked = item.locked;
   row.colour = item.colour;
+  row.pipe = item.pipe;
+  row.group = item.group;
+  row.note = item.note;
   row.reason = measurement.reason;
   if (!measurement.feature || measurement.feature->vertices.empty()) return row;
   row.measured = true;

@@ -26,12 +26,13 @@ void addText(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel, s
   overlay.shapes.push_back({OverlayShape::Kind::kText, role, {pixel}, std::move(text)});
 }
 
-/// Name, and how long or where to within what.
+/// Name, and how long or where to within what; then the operator's note.
 std::string labelOf(const SketchItem& item, const Measurement& measurement) {
-  if (!measurement.feature) return item.name;
+  const std::string note = item.note.empty() ? std::string() : "  \u2013 " + item.note;
+  if (!measurement.feature) return item.name + note;
   const FeatureRow row = featureRow(item, measurement);
-  if (row.length) return item.name + "  " + row.length_text;
-  return item.name + "  \u00b1 " + millimetreText(row.plus_minus);
+  if (row.length) return item.name + "  " + row.length_text + note;
+  return item.name + "  \u00b1 " + millimetreText(row.plus_minus) + note;
 }
 
 OverlayRole labelRole(const Measurement& measurement) {
@@ -50,7 +51,7 @@ void addEllipses(Overlay& overlay, const vision::View& view, const vision::Featu
 Eigen::Vector2d labelPlace(const SketchItem& item, SnapshotId snapshot) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
-  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+  for (int vertex = 0; vertex < item.vertices(); ++vertex) {
     if (const SketchPick* pick = item.pick(snapshot, vertex)) {
       sum += pick->pixel;
       ++count;
@@ -65,12 +66,9 @@ struct ItemStyle {
 };
 
 void addEdges(Overlay& overlay, const SketchItem& item, const vision::Snapshot& snapshot, OverlayRole role) {
-  const int count = vision::vertexCount(item.kind);
-  for (int vertex = 1; vertex < count; ++vertex) {
-    // Line and plane run from vertex to vertex; a triad's edges all leave vertex 0.
-    const int from = item.kind == vision::FeatureKind::kTriad ? 0 : vertex - 1;
+  for (const auto& [from, to] : edgesOf(item)) {
     const SketchPick* a = item.pick(snapshot.id, from);
-    const SketchPick* b = item.pick(snapshot.id, vertex);
+    const SketchPick* b = item.pick(snapshot.id, to);
     if (a == nullptr || b == nullptr) continue;
     const OverlayRole edge = a->placed() && b->placed() ? role : OverlayRole::kUnplaced;
     overlay.shapes.push_back({OverlayShape::Kind::kPolyline, edge,
@@ -80,7 +78,7 @@ void addEdges(Overlay& overlay, const SketchItem& item, const vision::Snapshot& 
 
 void addHandles(Overlay& overlay, const SketchItem& item, SnapshotId snapshot, const ItemStyle& style,
                 const OverlayOptions& options) {
-  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+  for (int vertex = 0; vertex < item.vertices(); ++vertex) {
     const SketchPick* pick = item.pick(snapshot, vertex);
     if (pick == nullptr) continue;
     const bool active = item.id == options.active_item && vertex == options.active_vertex &&
@@ -106,6 +104,7 @@ void addItem(Overlay& overlay, const Document& document, const SketchItem& item,
     return;
   }
   if (options.ellipses && measured.feature) addEllipses(overlay, snapshot.view, *measured.feature);
+  if (measured.feature) vision::addSolid(*measured.feature, snapshot.view, OverlayRole::kSolid, &overlay);
   const std::size_t first = overlay.shapes.size();
   addEdges(overlay, item, snapshot, style.role);
   addHandles(overlay, item, snapshot.id, style, options);
@@ -160,6 +159,7 @@ Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptio
   const SnapshotPtr snapshot = document.snapshot(id);
   if (!snapshot) return overlay;
   addPlan(overlay, document, snapshot->view, options);
+  for (const auto& body : document.world()) addWorldItem(body, snapshot->view, &overlay);
   for (const auto& item : document.items()) {
     if (options.draft != nullptr && options.draft->id == item.id) continue;
     if (!item.hidden) addItem(overlay, document, item, *snapshot, options, false);
@@ -172,6 +172,7 @@ Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptio
 Overlay buildOverlay(const Document& document, const vision::View& view, const OverlayOptions& options) {
   Overlay overlay;
   addPlan(overlay, document, view, options);
+  for (const auto& body : document.world()) addWorldItem(body, view, &overlay);
   for (const auto& item : document.items()) {
     const Measurement& measured = document.measurement(item.id);
     if (item.hidden || !measured.feature || measured.feature->parent != view.parent) continue;

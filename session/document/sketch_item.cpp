@@ -30,7 +30,7 @@ bool operator==(const SketchPick& a, const SketchPick& b) {
 
 bool operator==(const SketchItem& a, const SketchItem& b) {
   return a.id == b.id && a.kind == b.kind && a.name == b.name && a.colour == b.colour && a.hidden == b.hidden &&
-         a.locked == b.locked && a.picks == b.picks;
+         a.locked == b.locked && a.pipe == b.pipe && a.group == b.group && a.note == b.note && a.picks == b.picks;
 }
 
 const SketchPick* SketchItem::pick(SnapshotId snapshot, int vertex) const {
@@ -41,7 +41,7 @@ const SketchPick* SketchItem::pick(SnapshotId snapshot, int vertex) const {
 }
 
 void SketchItem::setPick(SnapshotId snapshot, int vertex, const SketchPick& pick) {
-  const int count = vision::vertexCount(kind);
+  const int count = vertices();
   LONGARM_REQUIRE(vertex >= 0 && vertex < count, "vertex " + std::to_string(vertex) + " of a " + toString(kind));
   auto& list = picks[snapshot];
   list.resize(static_cast<std::size_t>(count));
@@ -49,7 +49,7 @@ void SketchItem::setPick(SnapshotId snapshot, int vertex, const SketchPick& pick
 }
 
 bool SketchItem::placedIn(SnapshotId snapshot) const {
-  for (int vertex = 0; vertex < vision::vertexCount(kind); ++vertex) {
+  for (int vertex = 0; vertex < vertices(); ++vertex) {
     const SketchPick* found = pick(snapshot, vertex);
     if (found == nullptr || !found->placed()) return false;
   }
@@ -65,12 +65,27 @@ int SketchItem::placedCount(int vertex) const {
   return count;
 }
 
+std::vector<std::pair<int, int>> edgesOf(const SketchItem& item) {
+  if (item.pipe) return {{0, 1}, {2, 3}};
+  switch (item.kind) {
+    case vision::FeatureKind::kPoint: return {};
+    case vision::FeatureKind::kLine: return {{0, 1}};
+    case vision::FeatureKind::kPlane: return {{0, 1}, {1, 2}};
+    case vision::FeatureKind::kTriad: return {{0, 1}, {0, 2}, {0, 3}};
+  }
+  return {};
+}
+
+const char* wordFor(const SketchItem& item) { return item.pipe ? "pipe" : vision::toString(item.kind); }
+
 std::uint64_t hashOf(const SketchItem& item) {
   std::uint64_t hash = item.id.value;
   mix(hash, static_cast<std::uint64_t>(item.kind));
   mix(hash, std::hash<std::string>()(item.name));
   mix(hash, item.colour ? *item.colour + 1ULL : 0);
-  mix(hash, (item.hidden ? 1U : 0U) | (item.locked ? 2U : 0U));
+  mix(hash, (item.hidden ? 1U : 0U) | (item.locked ? 2U : 0U) | (item.pipe ? 4U : 0U));
+  mix(hash, item.group);
+  mix(hash, std::hash<std::string>()(item.note));
   for (const auto& [snapshot, list] : item.picks) {
     mix(hash, snapshot.value);
     for (const auto& pick : list) {

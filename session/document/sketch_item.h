@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,11 +48,17 @@ struct SketchItem {
   std::optional<std::uint32_t> colour;         ///< 0xRRGGBB; empty: the theme's.
   bool hidden = false;
   bool locked = false;                         ///< Can be selected, not moved.
-  std::map<SnapshotId, VertexPicks> picks;     ///< Each of size vertexCount(kind).
+  bool pipe = false;                           ///< A line that is measured by a pipe's outlines: vertices 0, 1 on one, 2, 3 on the other.
+  std::uint64_t group = 0;                     ///< Items of one number are selected and moved together; 0: none.
+  std::string note;                            ///< The operator's own words, shown below the name.
+  std::map<SnapshotId, VertexPicks> picks;     ///< Each of size vertices().
+
+  /// How many picks a picture has of it.
+  int vertices() const { return pipe ? 4 : vision::vertexCount(kind); }
 
   /// Null when this vertex has no pick in this picture.
   const SketchPick* pick(SnapshotId snapshot, int vertex) const;
-  /// Makes room for the picture where needed.  @pre 0 <= vertex < vertexCount(kind)
+  /// Makes room for the picture where needed.  @pre 0 <= vertex < vertices()
   void setPick(SnapshotId snapshot, int vertex, const SketchPick& pick);
   /// Whether every vertex is placed in this picture.
   bool placedIn(SnapshotId snapshot) const;
@@ -61,6 +68,11 @@ struct SketchItem {
   friend bool operator==(const SketchItem& a, const SketchItem& b);
   friend bool operator!=(const SketchItem& a, const SketchItem& b) { return !(a == b); }
 };
+
+/// Pairs of vertices that an edge is drawn between.
+std::vector<std::pair<int, int>> edgesOf(const SketchItem& item);
+/// "point", "line", "pipe", ...
+const char* wordFor(const SketchItem& item);
 
 /// Bits of the value mixed to one number; equal items give equal hashes.
 std::uint64_t hashOf(const SketchItem& item);

@@ -84,7 +84,7 @@ const PairMisses* CalibrationConcern::pair(const std::string& a, const std::stri
 CalibrationConcern calibrationConcern(const Document& document) {
   CalibrationConcern concern;
   for (const auto& item : document.items()) {
-    for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) addVertex(concern, document, item, vertex);
+    for (int vertex = 0; vertex < item.vertices(); ++vertex) addVertex(concern, document, item, vertex);
   }
   return concern;
 }

@@ -53,14 +53,15 @@ void DrawTool::refresh() {
     m_item = SketchItem{};
     m_item.id = m_id;
     m_item.kind = m_kind;
-    m_item.name = m_document->freeName(m_kind);
+    m_item.pipe = m_pipe;
+    m_item.name = m_document->freeName(m_kind, m_pipe);
   }
   bool any = false;
   for (const PaneSide side : kSides) {
     const SnapshotPtr picture = m_document->paneSnapshot(side);
     if (!picture) continue;
     any = true;
-    for (int vertex = 0; vertex < vision::vertexCount(m_kind); ++vertex) {
+    for (int vertex = 0; vertex < m_item.vertices(); ++vertex) {
       if (m_item.pick(picture->id, vertex) != nullptr) continue;
       const Eigen::Vector2d place = startPlace(vertex).cwiseProduct(sizeOf(*picture));
       m_item.setPick(picture->id, vertex, {place, PickState::kUnplaced});
@@ -190,7 +191,7 @@ bool DrawTool::beginDrag(const Gesture& gesture) {
   }
   const auto first = nextUnplaced(gesture.side);
   if (!first) return false;
-  for (int vertex = first->vertex + 1; vertex < vision::vertexCount(m_kind); ++vertex) {
+  for (int vertex = first->vertex + 1; vertex < m_item.vertices(); ++vertex) {
     if (isPlaced({m_id, vertex, first->snapshot, first->side})) continue;
     m_drag.beginStroke(*m_document, m_item, *first, vertex, gesture.press_pixel);
     return true;
@@ -264,8 +265,8 @@ std::vector<MatchWish> DrawTool::matchWishes() const {
   const SnapshotId panes[] = {m_document == nullptr ? SnapshotId{} : m_document->paneSnapshotId(PaneSide::kLeft),
                               m_document == nullptr ? SnapshotId{} : m_document->paneSnapshotId(PaneSide::kRight)};
   std::vector<MatchWish> wishes;
-  if (m_state == State::kDragging || !panes[0].valid() || !panes[1].valid() || panes[0] == panes[1]) return wishes;
-  for (int vertex = 0; vertex < vision::vertexCount(m_kind); ++vertex) {
+  if (m_pipe || m_state == State::kDragging || !panes[0].valid() || !panes[1].valid() || panes[0] == panes[1]) return wishes;
+  for (int vertex = 0; vertex < m_item.vertices(); ++vertex) {
     for (const int from : {0, 1}) {
       const SketchPick *here = m_item.pick(panes[from], vertex), *there = m_item.pick(panes[1 - from], vertex);
       const bool wanted = here != nullptr && here->placed() && there != nullptr && !there->placed();
@@ -341,7 +342,7 @@ std::string DrawTool::hint() const {
 }
 
 std::string DrawTool::placingHint() const {
-  const std::string kind = vision::toString(m_kind);
+  const std::string kind = wordFor(m_item);
   const auto next = nextUnplaced();
   if (!next) {
     const bool same = m_document->paneSnapshotId(PaneSide::kLeft) == m_document->paneSnapshotId(PaneSide::kRight);

@@ -56,7 +56,7 @@ class DrawTool : public SketchTool {
   ToolReply acceptMatch(const MatchHelp& help) override;
 
  protected:
-  explicit DrawTool(vision::FeatureKind kind) : m_kind(kind) {}
+  explicit DrawTool(vision::FeatureKind kind, bool pipe = false) : m_kind(kind), m_pipe(pipe) {}
   /// "end 2", or "the point".
   virtual std::string vertexName(int vertex) const = 0;
   /// Where the copies lie at first, as fractions of width and height.
@@ -83,6 +83,7 @@ class DrawTool : public SketchTool {
   std::string placingHint() const;
 
   vision::FeatureKind m_kind;
+  bool m_pipe;                             // A line by the outlines of a pipe.
   const Document* m_document = nullptr;
   GestureFilter m_filter;
   State m_state = State::kNoPicture;

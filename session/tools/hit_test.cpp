@@ -23,7 +23,7 @@ double distanceToPolyline(const Eigen::Vector2d& p, const std::vector<Eigen::Vec
 
 std::optional<Hit> hitHandle(const SketchItem& item, const Handle& base, const Eigen::Vector2d& pixel, double radius) {
   std::optional<Hit> best;
-  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+  for (int vertex = 0; vertex < item.vertices(); ++vertex) {
     const SketchPick* pick = item.pick(base.snapshot, vertex);
     if (pick == nullptr) continue;
     const double distance = (pick->pixel - pixel).norm();
@@ -36,16 +36,6 @@ std::optional<Hit> hitHandle(const SketchItem& item, const Handle& base, const E
 
 }  // namespace
 
-std::vector<std::pair<int, int>> edgesOf(vision::FeatureKind kind) {
-  switch (kind) {
-    case vision::FeatureKind::kPoint: return {};
-    case vision::FeatureKind::kLine: return {{0, 1}};
-    case vision::FeatureKind::kPlane: return {{0, 1}, {1, 2}};
-    case vision::FeatureKind::kTriad: return {{0, 1}, {0, 2}, {0, 3}};
-  }
-  return {};
-}
-
 std::optional<Hit> hitItem(const Document& document, const SketchItem& item, PaneSide side,
                            const Eigen::Vector2d& pixel, double radius_px) {
   const SnapshotPtr picture = document.paneSnapshot(side);
@@ -53,7 +43,7 @@ std::optional<Hit> hitItem(const Document& document, const SketchItem& item, Pan
   const Handle base{item.id, -1, picture->id, side};
   if (auto handle = hitHandle(item, base, pixel, radius_px)) return handle;
   std::optional<Hit> best;
-  for (const auto& [a, b] : edgesOf(item.kind)) {
+  for (const auto& [a, b] : edgesOf(item)) {
     const SketchPick* from = item.pick(picture->id, a);
     const SketchPick* to = item.pick(picture->id, b);
     if (from == nullptr || to == nullptr) continue;

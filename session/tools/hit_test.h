@@ -24,7 +24,4 @@ std::optional<Hit> hitTest(const Document& document, PaneSide side, const Eigen:
 std::optional<Hit> hitItem(const Document& document, const SketchItem& item, PaneSide side,
                            const Eigen::Vector2d& pixel, double radius_px);
 
-/// Pairs of vertices that an item of this kind draws an edge between.
-std::vector<std::pair<int, int>> edgesOf(vision::FeatureKind kind);
-
 }  // namespace longarm::session

@@ -9,7 +9,7 @@ namespace longarm::session {
 
 std::vector<int> verticesIn(const SketchItem& item, SnapshotId snapshot) {
   std::vector<int> vertices;
-  for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
+  for (int vertex = 0; vertex < item.vertices(); ++vertex) {
     if (item.pick(snapshot, vertex) != nullptr) vertices.push_back(vertex);
   }
   return vertices;

@@ -93,6 +93,7 @@ std::optional<vision::EpipolarCurve> curveBetween(const vision::Snapshot& from, 
 }  // namespace
 
 SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex) {
+  if (item.pipe) return {};
   const SketchPick* own = item.pick(snapshot, vertex);
   const bool own_is_free = own != nullptr && own->state == PickState::kFree;
   SnapshotId best;
@@ -116,6 +117,37 @@ std::optional<vision::EpipolarCurve> constrainingCurve(const Document& document,
   const SnapshotPtr source = document.snapshot(from), target = document.snapshot(snapshot);
   if (!source || !target) return std::nullopt;
   return curveBetween(*source, item.pick(from, vertex)->pixel, *target);
+}
+
+Result<SketchItem> withVertexAt(const Document& document, const SketchItem& item, int vertex, const Eigen::Vector3d& xyz) {
+  if (item.pipe) return Error{ErrorCode::kInvalidInput, "The outlines of a pipe are no points: move them in the pictures."};
+  SketchItem after = item;
+  int moved = 0;
+  for (const auto& [id, list] : item.picks) {
+    const SketchPick* pick = item.pick(id, vertex);
+    const SnapshotPtr picture = document.snapshot(id);
+    if (pick == nullptr || !pick->placed() || !picture) continue;
+    const auto pixel = picture->view.project(xyz);
+    if (!pixel || !picture->view.camera.containsPixel(*pixel)) {
+      return Error{ErrorCode::kInvalidInput, "Picture " + picture->view.name + " does not see that place."};
+    }
+    after.setPick(id, vertex, {*pixel, pick->state == PickState::kMatched ? PickState::kConstrained : pick->state});
+    ++moved;
+  }
+  if (moved < 2) return Error{ErrorCode::kInvalidInput, "'" + item.name + "' is not marked in two pictures there: it has no place yet."};
+  return after;
+}
+
+Result<SketchItem> withPickAt(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex,
+                              const Eigen::Vector2d& pixel) {
+  const SnapshotPtr picture = document.snapshot(snapshot);
+  if (!picture || item.pick(snapshot, vertex) == nullptr) return Error{ErrorCode::kInvalidInput, "There is no such pick."};
+  if (!pixel.allFinite() || (keptOnPicture(*picture, pixel) - pixel).norm() > 0) {
+    return Error{ErrorCode::kInvalidInput, "(" + formatFixed(pixel.x(), 1) + ", " + formatFixed(pixel.y(), 1) + ") is off picture " +
+                                               picture->view.name + "."};
+  }
+  const PickEditor editor(document, item, snapshot, {vertex});
+  return editor.moveTo({pixel}, true).item;
 }
 
 PickEditor::PickEditor(const Document& document, SketchItem item, SnapshotId snapshot, std::vector<int> vertices)
@@ -247,7 +279,16 @@ LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, cons
   if (edit != nullptr) live.raw = edit->raw;
   const Measurement measurement = document.measure(item);
   live.reason = measurement.reason;
-  if (measurement.feature) {
+  if (measurement.feature && item.pipe) {
+    const vision::Feature& pipe = *measurement.feature;
+    const auto& end = pipe.vertices[static_cast<std::size_t>(handle.vertex % 2)];
+    fillVertex(live, end.xyz, end.covariance, end.miss_m);
+    live.warnings = pipe.warnings;
+    live.length = pipe.length();
+    live.length_plus_minus = plusMinus95(pipe.lengthSigma());
+    live.radius = pipe.pipe->radius;
+    live.radius_plus_minus = plusMinus95(pipe.pipe->radius_sigma);
+  } else if (measurement.feature) {
     const auto& vertex = measurement.feature->vertices[static_cast<std::size_t>(handle.vertex)];
     fillVertex(live, vertex.xyz, vertex.covariance, vertex.miss_m);
     live.warnings = measurement.feature->warnings;
@@ -255,7 +296,7 @@ LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, cons
       live.length = measurement.feature->length();
       live.length_plus_minus = plusMinus95(measurement.feature->lengthSigma());
     }
-  } else {
+  } else if (!item.pipe) {
     measureVertexAlone(live, document, item, handle.vertex);
   }
   const SnapshotPtr from = document.snapshot(constrainingSnapshot(document, item, handle.snapshot, handle.vertex));
@@ -270,6 +311,7 @@ std::string LiveMeasure::text() const {
                      formatFixed(xyz->z() * 1000, 1) + " \u00b1 " + formatFixed(plus_minus * 1000, 1) +
                      " mm   miss " + formatFixed(miss * 1000, 1) + " mm";
   if (length) line += "   length " + millimetreText(*length, *length_plus_minus);
+  if (radius) line += "   radius " + millimetreText(*radius, *radius_plus_minus);
   return line;
 }
 

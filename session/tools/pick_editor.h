@@ -33,6 +33,14 @@ SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item
 std::optional<vision::EpipolarCurve> constrainingCurve(const Document& document, const SketchItem& item,
                                                        SnapshotId snapshot, int vertex);
 
+/// The item with one vertex at a place of the world: its picks go where the pictures see it, and stay there.
+/// @returns kInvalidInput: no pick of this vertex, or a picture that does not see the place.
+Result<SketchItem> withVertexAt(const Document& document, const SketchItem& item, int vertex, const Eigen::Vector3d& xyz);
+/// The item with one pick elsewhere, off its curve where it was held to one.
+/// @returns kInvalidInput: no such pick, or off the picture.
+Result<SketchItem> withPickAt(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex,
+                              const Eigen::Vector2d& pixel);
+
 /// Moves picks of some vertices in one picture.  Borrows the document, copies the item; a drag keeps one editor, so
 /// that the curves that hold its handles are computed once.
 ///

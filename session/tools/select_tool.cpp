@@ -16,6 +16,15 @@ ToolReply consumed(bool redraw = true) {
   return reply;
 }
 
+vision::Overlay bandPreview(const Gesture& band, PaneSide side) {
+  vision::Overlay overlay;
+  if (side != band.side) return overlay;
+  const Eigen::Vector2d &a = band.press_pixel, &b = band.pixel;
+  overlay.shapes.push_back({vision::OverlayShape::Kind::kPolyline, vision::OverlayRole::kUnplaced,
+                            {a, {b.x(), a.y()}, b, {a.x(), b.y()}, a}, {}});
+  return overlay;
+}
+
 std::string quoted(const SketchItem& item) { return "'" + item.name + "'"; }
 
 }  // namespace
@@ -29,6 +38,7 @@ void SelectTool::deactivate() {
   m_filter.cancel();
   m_drag.cancel();
   m_grab.reset();
+  m_band.reset();
   m_active = m_moved = {};
   m_state = State::kIdle;
   m_note.clear();
@@ -81,6 +91,7 @@ ToolReply SelectTool::onPress(const Gesture& gesture) {
   m_drag.cancel();
   m_state = State::kIdle;
   m_note.clear();
+  m_band.reset();
   m_grab = hitTest(*m_document, gesture.side, gesture.pixel, gesture.tolerance_px);
   if (!m_grab) return {};
   m_state = State::kGrabbed;
@@ -101,11 +112,12 @@ ToolReply SelectTool::onClick(const Gesture& gesture) {
     return reply;
   }
   const FeatureId id = m_grab->handle.item;
+  const std::vector<FeatureId> taken = withGroup(id, gesture.modifiers.alt);
   Selection selection = keep ? m_document->selection() : Selection{};
   if (gesture.modifiers.control && selection.contains(id)) {
-    selection.items.erase(id);
+    for (const FeatureId each : taken) selection.items.erase(each);
   } else {
-    selection.items.insert(id);
+    selection.items.insert(taken.begin(), taken.end());
     selection.primary = id;
   }
   m_active = m_grab->handle.valid() ? m_grab->handle : Handle{};
@@ -113,8 +125,63 @@ ToolReply SelectTool::onClick(const Gesture& gesture) {
   return reply;
 }
 
+std::vector<FeatureId> SelectTool::withGroup(FeatureId id, bool alone) const {
+  const SketchItem* item = m_document->item(id);
+  std::vector<FeatureId> ids;
+  for (const auto& other : m_document->items()) {
+    const bool together = !alone && item != nullptr && item->group != 0 && other.group == item->group;
+    if (other.id == id || together) ids.push_back(other.id);
+  }
+  return ids;
+}
+
+ToolReply SelectTool::onBand(const Gesture& gesture) {
+  if (!m_document->paneSnapshot(gesture.side)) return {};
+  m_state = State::kBand;
+  m_band = gesture;
+  return consumed();
+}
+
+ToolReply SelectTool::onBandEnd(const Gesture& gesture) {
+  m_state = State::kIdle;
+  m_band.reset();
+  const Eigen::Vector2d low = gesture.press_pixel.cwiseMin(gesture.pixel), high = gesture.press_pixel.cwiseMax(gesture.pixel);
+  const SnapshotId shown = m_document->paneSnapshotId(gesture.side);
+  Selection selection = gesture.modifiers.shift || gesture.modifiers.control ? m_document->selection() : Selection{};
+  for (const auto& item : m_document->items()) {
+    if (item.hidden) continue;
+    for (const int vertex : verticesIn(item, shown)) {
+      const Eigen::Vector2d& at = item.pick(shown, vertex)->pixel;
+      if ((at - low).minCoeff() < 0 || (high - at).minCoeff() < 0) continue;
+      const auto taken = withGroup(item.id, gesture.modifiers.alt);
+      selection.items.insert(taken.begin(), taken.end());
+      selection.primary = item.id;
+      break;
+    }
+  }
+  ToolReply reply = consumed();
+  reply.selection = std::move(selection);
+  return reply;
+}
+
+// The others of the group go the same way in this picture.
+CommandPtr SelectTool::movedGroup(const SketchItem& moved, const Gesture& gesture) const {
+  std::vector<CommandPtr> commands;
+  commands.push_back(replaceItem(*m_document, moved, "Move"));
+  const SnapshotId shown = m_document->paneSnapshotId(gesture.side);
+  for (const FeatureId id : withGroup(moved.id, gesture.modifiers.alt)) {
+    const SketchItem& other = *m_document->item(id);
+    const std::vector<int> vertices = verticesIn(other, shown);
+    if (id == moved.id || other.locked || vertices.empty()) continue;
+    const PickEditor editor(*m_document, other, shown, vertices);
+    commands.push_back(replaceItem(*m_document, editor.moveBy(gesture.travel(), gesture.modifiers.control).item, "Move"));
+  }
+  const std::string what = commands.size() > 1 ? "group of " : std::string(wordFor(moved)) + " ";
+  return composite("Move " + what + quoted(moved), std::move(commands));
+}
+
 ToolReply SelectTool::onDrag(const Gesture& gesture) {
-  if (m_state == State::kIdle) return {};
+  if (m_state == State::kBand || m_state == State::kIdle) return onBand(gesture);
   if (m_state == State::kGrabbed) {
     const SketchItem* item = m_grab ? m_document->item(m_grab->handle.item) : nullptr;
     if (item == nullptr || item->locked) {
@@ -129,11 +196,15 @@ ToolReply SelectTool::onDrag(const Gesture& gesture) {
   }
   m_drag.move(gesture, pictures());
   ToolReply reply = consumed();
-  if (!m_document->selection().contains(m_active.item)) reply.selection = Selection::of(m_active.item);
+  if (!m_document->selection().contains(m_active.item)) {
+    const auto taken = withGroup(m_active.item, gesture.modifiers.alt);
+    reply.selection = Selection{{taken.begin(), taken.end()}, m_active.item};
+  }
   return reply;
 }
 
 ToolReply SelectTool::onDragEnd(const Gesture& gesture) {
+  if (m_state == State::kBand) return onBandEnd(gesture);
   if (m_state != State::kDragging) return {};
   m_drag.move(gesture, pictures());
   SketchItem after = m_drag.finish();
@@ -143,14 +214,17 @@ ToolReply SelectTool::onDragEnd(const Gesture& gesture) {
   if (before == nullptr || *before == after) return reply;
   const bool whole = m_grab && !m_grab->handle.valid();
   if (!whole) m_moved = m_active;
-  const std::string what = whole ? "Move " : "Move handle of ";
-  const std::string label = what + std::string(vision::toString(after.kind)) + " " + quoted(after);
+  if (whole) {
+    reply.command = movedGroup(after, gesture);
+    return reply;
+  }
+  const std::string label = std::string("Move handle of ") + wordFor(after) + " " + quoted(after);
   reply.command = replaceItem(*m_document, std::move(after), label);
   return reply;
 }
 
 ToolReply SelectTool::onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
-  if (m_document == nullptr || m_state == State::kDragging) {
+  if (m_document == nullptr || m_state == State::kDragging || m_state == State::kBand) {
     return key == vision::SketchKey::kEscape ? cancel() : consumed(false);
   }
   m_note.clear();
@@ -215,6 +289,7 @@ ToolReply SelectTool::cancel() {
   m_filter.cancel();
   if (m_state != State::kIdle) {
     m_drag.cancel();
+    m_band.reset();
     m_state = State::kIdle;
     return consumed();
   }
@@ -261,6 +336,7 @@ ToolReply SelectTool::acceptMatch(const MatchHelp& help) {
 const SketchItem* SelectTool::draft() const { return m_drag.active() ? &m_drag.item() : nullptr; }
 
 vision::Overlay SelectTool::preview(PaneSide side) const {
+  if (m_band) return bandPreview(*m_band, side);
   if (m_drag.active()) return dragPreview(*m_document, m_drag, side);
   if (!exists(m_active)) return {};
   return handlePreview(*m_document, *m_document->item(m_active.item), m_active, side);

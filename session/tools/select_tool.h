@@ -3,6 +3,7 @@
 /// @file
 /// SelectTool: the default.  Selects, drags a handle or a whole feature, nudges, deletes.
 
+#include "session/commands/sketch_commands.h"
 #include "session/tools/gesture_filter.h"
 #include "session/tools/hit_test.h"
 #include "session/tools/pick_drag.h"
@@ -14,7 +15,10 @@ namespace longarm::session {
 /// |-----------|-------------------------------|-----------|----------------------------------------------|
 /// | kIdle     | hover                         | kIdle     | hint of what lies under the pointer          |
 /// | kIdle     | press on handle or body       | kGrabbed  | consumed                                     |
-/// | kIdle     | press on nothing              | kIdle     | not consumed: the canvas may pan             |
+/// | kIdle     | press on nothing              | kIdle     | not consumed                                 |
+/// | kIdle     | drag begins on nothing        | kBand     | a frame follows the pointer                  |
+/// | kBand     | drag ends                     | kIdle     | selects what has a handle in it (Shift adds) |
+/// | kBand     | Esc                           | kIdle     | nothing                                      |
 /// | kIdle     | click on nothing              | kIdle     | selects nothing (Control, Shift: keeps)      |
 /// | kGrabbed  | click                         | kIdle     | selects (Control toggles, Shift adds)        |
 /// | kGrabbed  | drag begins, item not locked  | kDragging | selects                                      |
@@ -26,9 +30,11 @@ namespace longarm::session {
 /// | kIdle     | arrow, active handle          | kIdle     | one command, absorbed by the one before      |
 /// | kIdle     | Tab                           | kIdle     | next handle of the primary selection         |
 /// | kIdle     | Delete                        | kIdle     | one command: removes what is selected        |
+///
+/// A group is selected and moved as one; Alt takes the single feature out of it.
 class SelectTool final : public SketchTool {
  public:
-  enum class State { kIdle, kGrabbed, kDragging };
+  enum class State { kIdle, kGrabbed, kDragging, kBand };
   State state() const { return m_state; }
 
   ToolKind kind() const override { return ToolKind::kSelect; }
@@ -57,6 +63,10 @@ class SelectTool final : public SketchTool {
   ToolReply onArrow(vision::SketchKey key, const vision::KeyModifiers& modifiers);
   ToolReply onTab(bool backwards);
   ToolReply onDelete();
+  ToolReply onBand(const Gesture& gesture);
+  ToolReply onBandEnd(const Gesture& gesture);
+  CommandPtr movedGroup(const SketchItem& moved, const Gesture& gesture) const;
+  std::vector<FeatureId> withGroup(FeatureId id, bool alone) const;
   bool exists(const Handle& handle) const;
   std::vector<Handle> handlesOf(FeatureId id) const;
 
@@ -65,6 +75,7 @@ class SelectTool final : public SketchTool {
   State m_state = State::kIdle;
   std::optional<Hit> m_grab;
   PickDrag m_drag;
+  std::optional<Gesture> m_band;           // From its press to where the pointer is.
   Handle m_active;
   Handle m_moved;                          // Dragged last; a match may help in the other picture.
   std::string m_note;                      // Replaces the hint until the next event.

@@ -14,7 +14,7 @@
 
 namespace longarm::session {
 
-enum class ToolKind { kSelect, kPoint, kLine, kPlane, kTriad };
+enum class ToolKind { kSelect, kPoint, kLine, kPipe, kPlane, kTriad, kMeasure };
 
 /// One vertex of one item in one picture.
 struct Handle {
@@ -50,6 +50,7 @@ struct LiveMeasure {
   double miss = 0;                                        ///< Distance of the viewing rays [m].
   std::optional<double> depth;                            ///< z in the other picture's camera [m].
   std::optional<double> length, length_plus_minus;        ///< Lines whose two ends are measured; +- 95 % [m].
+  std::optional<double> radius, radius_plus_minus;        ///< Measured pipes; +- 95 % [m].
   std::string reason;                                     ///< Why there is no xyz.
   std::vector<std::string> warnings;
 

@@ -6,6 +6,7 @@
 
 #include "session/commands/edit_history.h"
 #include "session/commands/sketch_commands.h"
+#include "session/commands/world_commands.h"
 #include "tests/session/synthetic_views.h"
 
 namespace longarm::session {
@@ -186,7 +187,7 @@ class RandomEditor {
   CommandPtr next() {
     const Document& document = m_bench.document;
     if (document.items().size() > 12) return removeItems(document, {anyItem(), anyItem(), anyItem()});
-    switch (below(14)) {
+    switch (below(18)) {
       case 0:
       case 1: return addItem(randomItem());
       case 2: return removeItems(document, {anyItem(), anyItem()});
@@ -200,6 +201,10 @@ class RandomEditor {
       case 10: return below(2) == 0 ? duplicateItem(document, anyItem()) : moveItem(document, anyItem(), below(8));
       case 11: return snapshotEdit();
       case 12: return below(20) == 0 ? openState(document, otherSketch(), "other") : nullptr;
+      case 16: return groupItems(document, {anyItem(), anyItem(), anyItem()}, below(3) != 0);
+      case 13: return noteItem(document, anyItem(), below(3) == 0 ? "" : "note " + std::to_string(below(9)));
+      case 14:
+      case 15: return worldEdit();
       default: return both();
     }
   }
@@ -229,6 +234,35 @@ class RandomEditor {
     if (!state.items.empty()) state.items.pop_back();
     std::reverse(state.items.begin(), state.items.end());
     return state;
+  }
+  WorldItemId anyBody() {
+    const auto& world = m_bench.document.world();
+    return world.empty() ? WorldItemId{} : world[below(world.size())].id;
+  }
+  WorldItem randomBody() {
+    WorldItem body;
+    body.id = m_bench.document.nextWorldId();
+    body.kind = below(4) == 0 ? WorldKind::kPoints : WorldKind::kBox;
+    body.name = "body " + std::to_string(below(20));
+    body.X_WO.translation() = Eigen::Vector3d(pixel(), pixel(), pixel()) / 640;
+    if (body.kind == WorldKind::kPoints) body.points.assign(1 + below(4), body.X_WO.translation());
+    body.source = anyItem();
+    return body;
+  }
+  CommandPtr worldEdit() {
+    const Document& document = m_bench.document;
+    if (document.world().size() > 6) return removeWorldItems(document, {anyBody(), anyBody()});
+    const WorldItem* body = document.worldItem(anyBody());
+    if (below(4) == 0 && !document.snapshots().empty()) {
+      return pinSnapshot(document, document.snapshots()[below(document.snapshots().size())]->id, below(2) == 0);
+    }
+    if (body == nullptr || below(2) == 0) return addWorldItem(randomBody());
+    WorldItem after = *body;
+    after.size(static_cast<int>(below(3))) = pixel() / 640;
+    after.margin_m = pixel() / 6400;
+    after.hidden = below(2) == 0;
+    after.obstacle = below(2) == 0;
+    return replaceWorldItem(document, after);
   }
   CommandPtr both() {
     std::vector<CommandPtr> commands;

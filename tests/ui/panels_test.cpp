@@ -10,8 +10,7 @@
 #include <QToolButton>
 #include <gtest/gtest.h>
 
-#include "session/commands/sketch_commands.h"
-#include "tests/session/synthetic_views.h"
+#include "tests/ui/panel_rig.h"
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
 #include "ui/head_panel.h"
@@ -29,38 +28,11 @@
 namespace longarm::ui {
 namespace {
 
-using session::PickState;
-using session::SketchItem;
+using tests::PanelRig;
 using vision::PaneSide;
 
-struct Rig {
-  QTemporaryDir folder;
-  Appearance appearance{QStringLiteral("dark")};
-  Workbench bench{folder.filePath(QStringLiteral("autosave"))};
-  Actions actions{appearance};
-
-  /// A measured line of the synthetic scene.
-  FeatureId addLine(const char* name) {
-    if (bench.document().snapshots().empty()) {
-      bench.history().push(session::addSnapshots(bench.document(), {tests::snapshotOf(1, scene.left), tests::snapshotOf(2, scene.right)}));
-    }
-    SketchItem item;
-    item.id = bench.document().nextFeatureId();
-    item.kind = vision::FeatureKind::kLine;
-    item.name = name;
-    for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
-      const auto id = bench.document().paneSnapshotId(side);
-      item.setPick(id, 0, {scene.pixel(side, scene.a), PickState::kFree});
-      item.setPick(id, 1, {scene.pixel(side, scene.b), PickState::kFree});
-    }
-    bench.history().push(session::addItem(item));
-    return item.id;
-  }
-  tests::StereoScene scene;
-};
-
 TEST(FeaturePanel, ListsWhatIsMeasuredAndSelectsBothWays) {
-  Rig rig;
+  PanelRig rig;
   FeaturePanel panel(rig.bench.targeting(), rig.actions, rig.appearance);
   panel.resize(600, 200);
   panel.show();
@@ -78,7 +50,7 @@ TEST(FeaturePanel, ListsWhatIsMeasuredAndSelectsBothWays) {
 }
 
 TEST(FeaturePanel, RenamesHidesAndLocksEachAsOneUndoStep) {
-  Rig rig;
+  PanelRig rig;
   FeaturePanel panel(rig.bench.targeting(), rig.actions, rig.appearance);
   panel.resize(600, 200);
   panel.show();
@@ -101,7 +73,7 @@ TEST(FeaturePanel, RenamesHidesAndLocksEachAsOneUndoStep) {
 }
 
 TEST(SketchActions, FollowSelectionHistoryAndTool) {
-  Rig rig;
+  PanelRig rig;
   SketchActions sketch(rig.bench.targeting(), rig.actions);
   EXPECT_FALSE(rig.actions.at(ActionId::kUndo)->isEnabled());
   EXPECT_FALSE(rig.actions.whyNot(ActionId::kToolLine).isEmpty()) << "no picture to draw on";
@@ -121,7 +93,7 @@ TEST(SketchActions, FollowSelectionHistoryAndTool) {
 }
 
 TEST(SketchActions, UndoAHundredStepsAndRedoThemBitForBit) {
-  Rig rig;
+  PanelRig rig;
   SketchActions sketch(rig.bench.targeting(), rig.actions);
   const FeatureId id = rig.addLine("Line 1");
   const auto before = rig.bench.document().state();
@@ -134,7 +106,7 @@ TEST(SketchActions, UndoAHundredStepsAndRedoThemBitForBit) {
 }
 
 TEST(PanelsWithoutARobot, DisableWhatCannotBeDoneAndSayWhy) {
-  Rig rig;
+  PanelRig rig;
   HeadPanel head(rig.bench, rig.actions, rig.appearance);
   MotionPanel motion(rig.bench, rig.actions, rig.appearance);
   StopPanel stop(rig.bench, rig.actions, rig.appearance);
@@ -150,7 +122,7 @@ TEST(PanelsWithoutARobot, DisableWhatCannotBeDoneAndSayWhy) {
 }
 
 TEST(MacroPanel, OffersCannedMotionsOfTheWorkcellAndSaysWhatIsMissing) {
-  Rig rig;
+  PanelRig rig;
   MacroPanel panel(rig.bench, rig.actions, rig.appearance);
   auto workcell = planning::loadBuiltInWorkcell();
   ASSERT_TRUE(workcell.ok()) << workcell.error().message;
@@ -163,7 +135,7 @@ TEST(MacroPanel, OffersCannedMotionsOfTheWorkcellAndSaysWhatIsMissing) {
 }
 
 TEST(SnapshotPane, ShowsWhatIsTakenAndKeepsTheSketchOffLivePictures) {
-  Rig rig;
+  PanelRig rig;
   SnapshotPane pane(PaneSide::kLeft, rig.bench, rig.appearance);
   pane.resize(500, 420);
   pane.show();
@@ -185,7 +157,7 @@ TEST(SnapshotPane, ShowsWhatIsTakenAndKeepsTheSketchOffLivePictures) {
 }
 
 TEST(SnapshotPane, TellsBothPanesApartWhenOneSnapshotIsChosenElsewhere) {
-  Rig rig;
+  PanelRig rig;
   SnapshotPane left(PaneSide::kLeft, rig.bench, rig.appearance), right(PaneSide::kRight, rig.bench, rig.appearance);
   rig.addLine("Line 1");
   left.showLive({});
@@ -194,7 +166,7 @@ TEST(SnapshotPane, TellsBothPanesApartWhenOneSnapshotIsChosenElsewhere) {
 }
 
 TEST(StatusStrip, ShowsTheLastSentenceAndTheMode) {
-  Rig rig;
+  PanelRig rig;
   StatusStrip strip(rig.bench, rig.actions, rig.appearance);
   strip.resize(1200, 36);
   rig.bench.say(QStringLiteral("The gripper is stuck."));

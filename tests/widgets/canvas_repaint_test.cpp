@@ -90,7 +90,7 @@ vision::CameraModel barrel(int width, int height) {
 // Shapes of every kind and role, also outside of the picture.
 Overlay randomOverlay(std::mt19937& rng) {
   std::uniform_real_distribution<double> u(-100, 740), v(-100, 580);
-  std::uniform_int_distribution<int> role(0, static_cast<int>(OverlayRole::kLabel)), count(1, 9), kind(0, 2);
+  std::uniform_int_distribution<int> role(0, static_cast<int>(OverlayRole::kDimension)), count(1, 9), kind(0, 3);
   Overlay overlay;
   for (int i = count(rng); i > 0; --i) {
     OverlayShape shape;

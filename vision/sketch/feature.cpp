@@ -147,6 +147,13 @@ Eigen::Vector3d Feature::direction() const {
 
 double Feature::length() const { return vertices.size() < 2 ? 0 : (vertices[1].xyz - vertices[0].xyz).norm(); }
 
+Pose pipePose(const Feature& feature) {
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), feature.direction()).toRotationMatrix();
+  X.translation() = (feature.vertices[0].xyz + feature.vertices[1].xyz) / 2;
+  return X;
+}
+
 double Feature::lengthSigma() const {
   if (vertices.size() < 2) return 0;
   const Eigen::Vector3d d = direction();

@@ -47,6 +47,9 @@ struct Feature {
   double lengthSigma() const;
 };
 
+/// Middle of a pipe, z along its axis.  @pre feature.pipe, two vertices
+Pose pipePose(const Feature& feature);
+
 /// The feature as the headless verbs print and read it; a line adds direction, length and
 /// length_sigma (a pipe radius, radius_sigma, radius_spread), a plane and a triad what toJson of their shapes holds.
 nlohmann::json toJson(const Feature& feature);

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/text.h"
+#include "vision/sketch/solids.h"
 #include "vision/stereo/project_polyline.h"
 
 namespace longarm::vision {
@@ -88,8 +89,19 @@ std::vector<Eigen::Vector2d> errorEllipse(const View& view, const Eigen::Vector3
   return outline;
 }
 
+void addSolid(const Feature& feature, const View& view, OverlayRole role, Overlay* overlay) {
+  if (feature.parent != view.parent) return;
+  SolidLook look;
+  look.role = role;
+  if (feature.box && feature.box->is_box) addBox(feature.box->X_WB, feature.box->size, view, look, overlay);
+  if (feature.pipe && feature.vertices.size() == 2) {
+    addCylinder(pipePose(feature), feature.pipe->radius, feature.length(), view, look, overlay);
+  }
+}
+
 void addFeature(const Feature& feature, const View& view, OverlayRole role, Overlay* overlay) {
   if (feature.parent != view.parent) return;
+  addSolid(feature, view, OverlayRole::kSolid, overlay);
   for (const auto& edge : edgesOf(feature.kind)) {
     std::vector<Eigen::Vector3d> points;
     for (const std::size_t i : edge) {

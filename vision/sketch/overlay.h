@@ -26,7 +26,10 @@ void addEpipolarBand(const EpipolarCurve& curve, const std::vector<double>& sigm
 std::vector<Eigen::Vector2d> errorEllipse(const View& view, const Eigen::Vector3d& xyz,
                                           const Eigen::Matrix3d& covariance, int samples = 48);
 
-/// A measured feature as the view sees it: edges, vertices and their 95 % ellipses.
+/// The box of a triad or the surface of a pipe; nothing for other features.
+void addSolid(const Feature& feature, const View& view, OverlayRole role, Overlay* overlay);
+
+/// A measured feature as the view sees it: edges, vertices and their 95 % ellipses, and its box or pipe.
 void addFeature(const Feature& feature, const View& view, OverlayRole role, Overlay* overlay);
 
 /// A path in the view's parent frame, as far as it can be seen.

@@ -38,7 +38,10 @@ enum class OverlayRole { kSketch, kSelected, kHandle, kActiveHandle, kUnplaced, 
                          kEllipse, kPath, kPathOccluded, kWarning, kLabel,
                          kBand,         ///< Where the calibration may put the true curve, +- 2 sigma.
                          kMatch,        ///< A match that is offered.
-                         kRival };      ///< One of several places that look alike.
+                         kRival,        ///< One of several places that look alike.
+                         kSolid,        ///< What a box or pipe looks like where it was measured.
+                         kWorld,        ///< A body of the sketched world.
+                         kDimension };  ///< A measured distance or angle.
 
 struct OverlayShape {
   enum class Kind { kPolyline, kMarker, kText, kArea } kind = Kind::kPolyline;   ///< kArea: filled, seen through.

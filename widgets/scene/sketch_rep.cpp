@@ -76,6 +76,21 @@ vtkSmartPointer<vtkActor> makeMarks(const std::vector<Eigen::Vector3d>& corners,
   return actor;
 }
 
+// A measured box or pipe, seen through.
+vtkSmartPointer<vtkActor> makeSolid(const vision::Feature& feature, const Eigen::Vector3d& color) {
+  constexpr double kSeenThrough = 0.3;
+  const Eigen::Vector4d rgba(color[0], color[1], color[2], kSeenThrough);
+  vtkSmartPointer<vtkActor> actor;
+  if (feature.box && feature.box->is_box && feature.box->size.minCoeff() > 0) {
+    actor = internal::makeShapeActor(planning::Box{feature.box->size}, rgba);
+    internal::setActorPose(actor, feature.box->X_WB);
+  } else if (feature.pipe && feature.vertices.size() == 2 && feature.length() > 0 && feature.pipe->radius > 0) {
+    actor = internal::makeShapeActor(planning::Cylinder{feature.pipe->radius, feature.length()}, rgba);
+    internal::setActorPose(actor, vision::pipePose(feature));
+  }
+  return actor;
+}
+
 vtkSmartPointer<vtkActor> makeEllipsoid(const vision::FeatureVertex& vertex, const Eigen::Vector3d& color,
                                         double scale) {
   Eigen::Matrix3d axes = scale * ellipsoidAxes(vertex.covariance);
@@ -132,6 +147,7 @@ void SketchRep::update(const std::vector<SketchItem>& items) {
     if (!item.visible || corners.empty() || !finite) continue;
     const Eigen::Vector3d color = item.selected ? m_impl->look.selected_color : m_impl->look.color;
     addProp(makeMarks(corners, edgesOf(item.feature.kind), item.feature.vertices.size(), color, item.selected));
+    if (const auto solid = makeSolid(item.feature, color)) addProp(solid);
     if (m_impl->look.ellipsoids) {
       for (const vision::FeatureVertex& vertex : item.feature.vertices) {
         const auto ellipsoid = makeEllipsoid(vertex, color, m_impl->look.ellipsoid_scale);

@@ -1,0 +1,93 @@
+#include "session/controllers/world_controller.h"
+
+#include <utility>
+
+#include "session/commands/world_commands.h"
+
+namespace longarm::session {
+
+WorldController::WorldController(Document& document, EditHistory& history, QObject* parent)
+    : QObject(parent), m_document(document), m_history(history) {
+  m_observer = m_document.observe([this](const Change& change) {
+    if (change.kind == ChangeKind::kWorldChanged || change.kind == ChangeKind::kReset) Q_EMIT changed();
+  });
+}
+
+WorldController::~WorldController() { m_document.unobserve(m_observer); }
+
+std::vector<WorldItem> WorldController::fromSelection(Status* why) const {
+  std::vector<WorldItem> made;
+  std::vector<vision::Feature> points;
+  FeatureId first_point;
+  for (const FeatureId id : m_document.selection().items) {
+    const Measurement& measured = m_document.measurement(id);
+    if (!measured.feature) {
+      *why = {ErrorCode::kInvalidInput, measured.reason};
+      return {};
+    }
+    if (measured.feature->kind == vision::FeatureKind::kPoint) {
+      if (!points.empty() && points.front().parent != measured.feature->parent) {
+        *why = {ErrorCode::kInvalidInput, "The points are measured in different frames: add them one after the other."};
+        return {};
+      }
+      if (points.empty()) first_point = id;
+      points.push_back(*measured.feature);
+      continue;
+    }
+    auto item = worldItemFrom(*measured.feature);
+    if (!item) {
+      *why = item.error();
+      return {};
+    }
+    item->source = id;
+    made.push_back(std::move(*item));
+  }
+  if (!points.empty()) {
+    made.push_back(worldPointsFrom(points));
+    if (points.size() == 1) made.back().source = first_point;
+    else made.back().name = std::to_string(points.size()) + " points";
+  }
+  if (made.empty()) *why = {ErrorCode::kRefused, "Select a measured box, plane, pipe or points first."};
+  return made;
+}
+
+QString WorldController::whyNotAdd() const {
+  Status why;
+  (void)fromSelection(&why);
+  return why ? QString() : QString::fromStdString(why.error().message);
+}
+
+Status WorldController::addSelected() {
+  Status why;
+  std::vector<WorldItem> made = fromSelection(&why);
+  if (!why) return why;
+  std::vector<CommandPtr> commands;
+  std::uint64_t id = m_document.nextWorldId().value;
+  const std::string label = made.size() == 1 ? "Add '" + made.front().name + "' to the world"
+                                             : "Add " + std::to_string(made.size()) + " bodies to the world";
+  for (auto& item : made) {
+    item.id = {id++};
+    commands.push_back(addWorldItem(std::move(item)));
+  }
+  m_history.seal();
+  m_history.push(composite(label, std::move(commands)));
+  return {};
+}
+
+void WorldController::remove(const std::vector<WorldItemId>& ids) {
+  auto command = removeWorldItems(m_document, ids);
+  if (!command) return;
+  m_history.seal();
+  m_history.push(std::move(command));
+}
+
+Status WorldController::edit(const WorldItem& after) {
+  if (const Status checked = checkWorldItem(after); !checked) return checked;
+  auto command = replaceWorldItem(m_document, after);
+  if (!command) return {};
+  m_history.seal();
+  m_history.push(std::move(command));
+  return {};
+}
+
+}  // namespace longarm::session

@@ -1,0 +1,131 @@
+#include "ui/world_panel.h"
+
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QPushButton>
+#include <QTableWidget>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "core/text.h"
+
+namespace longarm::ui {
+
+using session::WorldItem;
+using session::WorldKind;
+
+WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_table(new QTableWidget(this)), m_remove(new QPushButton(tr("Remove"), this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(3, 3, 3, 3);
+  buildTable();
+  column->addWidget(m_table, 1);
+  auto* row = new QHBoxLayout;
+  for (const auto id : {ActionId::kAddToWorld, ActionId::kExportWorld}) {
+    auto* button = new QToolButton(this);
+    button->setDefaultAction(actions.at(id));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setFocusPolicy(Qt::TabFocus);
+    row->addWidget(button);
+  }
+  m_remove->setFocusPolicy(Qt::TabFocus);
+  row->addWidget(m_remove);
+  row->addStretch(1);
+  column->addLayout(row);
+  connect(m_remove, &QPushButton::clicked, this, &WorldPanel::removeSelected);
+  connect(m_table, &QTableWidget::cellChanged, this, &WorldPanel::edited);
+  connect(m_table, &QTableWidget::itemSelectionChanged, this, &WorldPanel::refreshButtons);
+  connect(&m_bench.world(), &session::WorldController::changed, this, &WorldPanel::refresh);
+  refresh();
+}
+
+void WorldPanel::buildTable() {
+  m_table->setColumnCount(kColumns);
+  m_table->setHorizontalHeaderLabels({tr("Body"), tr("Kind"), tr("x mm"), tr("y mm"), tr("z mm"), tr("Margin mm"), tr("Shown"), tr("Obstacle")});
+  const char* tips[] = {QT_TR_NOOP("Name; double-click to change it"), QT_TR_NOOP("What it came from"),
+                        QT_TR_NOOP("Edge of a box; diameter of a pipe or of points"), QT_TR_NOOP("Edge of a box"),
+                        QT_TR_NOOP("Edge of a box, thickness of a slab, length of a pipe"),
+                        QT_TR_NOOP("Plans keep this much more away: what the measurement does not know"), QT_TR_NOOP("Drawn in pictures and scene"),
+                        QT_TR_NOOP("Plans keep clear of it")};
+  for (int i = 0; i < kColumns; ++i) m_table->horizontalHeaderItem(i)->setToolTip(tr(tips[i]));
+  m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
+  m_table->setEditTriggers(QAbstractItemView::DoubleClicked);
+  m_table->setShowGrid(false);
+  m_table->verticalHeader()->hide();
+  m_table->verticalHeader()->setDefaultSectionSize(24);
+  m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  m_table->horizontalHeader()->setSectionResizeMode(kName, QHeaderView::Stretch);
+}
+
+void WorldPanel::refresh() {
+  m_filling = true;
+  const auto& items = m_bench.world().items();
+  m_table->setRowCount(static_cast<int>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) fillRow(static_cast<int>(i), items[i]);
+  m_filling = false;
+  refreshButtons();
+}
+
+void WorldPanel::fillRow(int row, const WorldItem& item) {
+  const auto number = [](double metres) { return QString::fromStdString(formatFixed(metres * 1000, 1)); };
+  const bool round = item.kind == WorldKind::kPipe || item.kind == WorldKind::kPoints;
+  const QString texts[] = {QString::fromStdString(item.name), QString::fromLatin1(session::toString(item.kind)), number(item.size.x()),
+                           round ? QString() : number(item.size.y()), item.kind == WorldKind::kPoints ? QString() : number(item.size.z()),
+                           number(item.margin_m), {}, {}};
+  for (int column = 0; column < kColumns; ++column) {
+    auto* cell = new QTableWidgetItem(texts[column]);
+    Qt::ItemFlags flags = Qt::ItemIsSelectable | Qt::ItemIsEnabled;
+    if (column == kShown || column == kObstacle) {
+      const bool on = column == kShown ? !item.hidden : item.obstacle;
+      cell->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+      flags |= Qt::ItemIsUserCheckable;
+    } else if (column != kKind && !texts[column].isEmpty()) {
+      flags |= Qt::ItemIsEditable;
+    }
+    cell->setFlags(flags);
+    if (column > kKind) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    m_table->setItem(row, column, cell);
+  }
+}
+
+void WorldPanel::edited(int row, int column) {
+  if (m_filling || row >= static_cast<int>(m_bench.world().items().size())) return;
+  WorldItem after = m_bench.world().items()[static_cast<std::size_t>(row)];
+  const QTableWidgetItem& cell = *m_table->item(row, column);
+  const auto number = parseNumber(cell.text().toStdString());
+  Status done;
+  switch (column) {
+    case kName: after.name = cell.text().trimmed().left(100).toStdString(); break;
+    case kShown: after.hidden = cell.checkState() != Qt::Checked; break;
+    case kObstacle: after.obstacle = cell.checkState() == Qt::Checked; break;
+    default:
+      if (!number) done = {ErrorCode::kInvalidInput, "That is no number. The decimal point is a dot."};
+      else if (column == kMargin) after.margin_m = *number / 1000;
+      else after.size(column - kSizeX) = *number / 1000;
+  }
+  // Diameters are one number, though a size has three.
+  if (column == kSizeX && after.kind == WorldKind::kPipe) after.size.y() = after.size.x();
+  if (column == kSizeX && after.kind == WorldKind::kPoints) after.size.setConstant(after.size.x());
+  if (column == kName && after.name.empty()) done = {ErrorCode::kInvalidInput, "A body needs a name."};
+  if (done) done = m_bench.world().edit(after);
+  if (!done) m_bench.say(QString::fromStdString(done.error().message));
+  refresh();
+}
+
+std::vector<WorldItemId> WorldPanel::selected() const {
+  std::vector<WorldItemId> ids;
+  for (const auto& index : m_table->selectionModel()->selectedRows()) {
+    ids.push_back(m_bench.world().items()[static_cast<std::size_t>(index.row())].id);
+  }
+  return ids;
+}
+
+void WorldPanel::refreshButtons() {
+  const bool any = !m_table->selectionModel()->selectedRows().empty();
+  m_remove->setEnabled(any);
+  m_remove->setToolTip(any ? tr("Take the selected bodies out of the world (Ctrl+Z brings them back)") : tr("Select a body in the list first."));
+}
+
+void WorldPanel::removeSelected() { m_bench.world().remove(selected()); }
+
+}  // namespace longarm::ui
