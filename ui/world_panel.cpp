@@ -41,11 +41,14 @@ WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
 
 void WorldPanel::buildTable() {
   m_table->setColumnCount(kColumns);
-  m_table->setHorizontalHeaderLabels({tr("Body"), tr("Kind"), tr("x mm"), tr("y mm"), tr("z mm"), tr("Margin mm"), tr("Shown"), tr("Obstacle")});
+  m_table->setHorizontalHeaderLabels({tr("Body"), tr("Kind"), tr("x mm"), tr("y mm"), tr("z mm"), tr("Margin mm"), tr("at x"), tr("at y"), tr("at z"),
+                                      tr("Shown"), tr("Obstacle")});
   const char* tips[] = {QT_TR_NOOP("Name; double-click to change it"), QT_TR_NOOP("What it came from"),
                         QT_TR_NOOP("Edge of a box; diameter of a pipe or of points"), QT_TR_NOOP("Edge of a box"),
                         QT_TR_NOOP("Edge of a box, thickness of a slab, length of a pipe"),
-                        QT_TR_NOOP("Plans keep this much more away: what the measurement does not know"), QT_TR_NOOP("Drawn in pictures and scene"),
+                        QT_TR_NOOP("Plans keep this much more away: what the measurement does not know"), QT_TR_NOOP("Its middle in the robot's frame, mm"),
+                        QT_TR_NOOP("Its middle in the robot's frame, mm"), QT_TR_NOOP("Its middle in the robot's frame, mm"),
+                        QT_TR_NOOP("Drawn in pictures and scene"),
                         QT_TR_NOOP("Plans keep clear of it")};
   for (int i = 0; i < kColumns; ++i) m_table->horizontalHeaderItem(i)->setToolTip(tr(tips[i]));
   m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -68,10 +71,12 @@ void WorldPanel::refresh() {
 
 void WorldPanel::fillRow(int row, const WorldItem& item) {
   const auto number = [](double metres) { return QString::fromStdString(formatFixed(metres * 1000, 1)); };
-  const bool round = item.kind == WorldKind::kPipe || item.kind == WorldKind::kPoints;
+  const bool round = item.kind == WorldKind::kPipe || item.kind == WorldKind::kPoints;   // one diameter
+  const bool cloud = item.kind == WorldKind::kPoints;
+  const auto place = [&](int axis) { return cloud ? QString() : number(item.X_WO.translation()(axis)); };
   const QString texts[] = {QString::fromStdString(item.name), QString::fromLatin1(session::toString(item.kind)), number(item.size.x()),
-                           round ? QString() : number(item.size.y()), item.kind == WorldKind::kPoints ? QString() : number(item.size.z()),
-                           number(item.margin_m), {}, {}};
+                           round ? QString() : number(item.size.y()), cloud ? QString() : number(item.size.z()),
+                           number(item.margin_m), place(0), place(1), place(2), {}, {}};
   for (int column = 0; column < kColumns; ++column) {
     auto* cell = new QTableWidgetItem(texts[column]);
     Qt::ItemFlags flags = Qt::ItemIsSelectable | Qt::ItemIsEnabled;
@@ -101,6 +106,7 @@ void WorldPanel::edited(int row, int column) {
     default:
       if (!number) done = {ErrorCode::kInvalidInput, "That is no number. The decimal point is a dot."};
       else if (column == kMargin) after.margin_m = *number / 1000;
+      else if (column >= kAtX) after.X_WO.translation()(column - kAtX) = *number / 1000;
       else after.size(column - kSizeX) = *number / 1000;
   }
   // Diameters are one number, though a size has three.

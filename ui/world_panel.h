@@ -18,7 +18,7 @@ class WorldPanel final : public QWidget {
   Q_OBJECT
 
  public:
-  enum Column { kName, kKind, kSizeX, kSizeY, kSizeZ, kMargin, kShown, kObstacle, kColumns };
+  enum Column { kName, kKind, kSizeX, kSizeY, kSizeZ, kMargin, kAtX, kAtY, kAtZ, kShown, kObstacle, kColumns };
 
   WorldPanel(Workbench& bench, Actions& actions, QWidget* parent = nullptr);
   QTableWidget* table() const { return m_table; }

@@ -354,6 +354,7 @@ std::string SelectTool::hint() const {
     if (m_drag.edit().on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
     return "Drag onto the feature; Esc cancels.";
   }
+  if (m_band) return "Let go to select what has a handle in the frame; with Shift it is added.";
   if (!m_note.empty()) return m_note;
   if (m_active.valid()) return "Arrow keys move the handle 0.1 px, with Shift 1 px; Tab goes to the next handle.";
   if (m_document != nullptr && !m_document->selection().items.empty()) {

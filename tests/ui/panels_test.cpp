@@ -217,7 +217,7 @@ TEST(PictureFilesDialog, OpensOnlyWhatExistsAndNamesWhatIsMissing) {
 }
 
 TEST(FileActions, AnOpenedSketchTakesThePlaceOfAnotherWhichUndoBringsBack) {
-  Rig rig;
+  PanelRig rig;
   QSettings settings(rig.folder.filePath(QStringLiteral("settings.ini")), QSettings::IniFormat);
   FileActions files(rig.bench, rig.actions, settings, nullptr);
   QSignalSpy folder_changed(&files, &FileActions::sketchFolderChanged);

@@ -119,6 +119,7 @@ TEST(Triangulate, PoseCovarianceOfTheViewsIsCarried) {
   rig.right.pose_covariance = sigmas.cwiseAbs2().asDiagonal();
   Dice dice(5);
   double sum = 0;
+  int beyond = 0;
   const int trials = 3000;
   for (int i = 0; i < trials; ++i) {
     const Vector3d truth = pointSeenByAll({&rig.left, &rig.right}, 1, 2.5, &dice);
@@ -131,10 +132,54 @@ TEST(Triangulate, PoseCovarianceOfTheViewsIsCarried) {
                                     {&rig.right, *seen + dice.normal2(0.5), 0}});
     ASSERT_TRUE(point.ok()) << point.error().message;
     const Vector3d error = point->xyz - truth;
-    sum += error.dot(point->covariance.ldlt().solve(error));
+    const double nees = error.dot(point->covariance.ldlt().solve(error));
+    sum += nees;
+    beyond += nees > 7.815 ? 1 : 0;
   }
   EXPECT_GT(sum / trials, 2.7);
   EXPECT_LT(sum / trials, 3.3);
+  EXPECT_GT(beyond, 0.03 * trials) << "the 95 % ellipsoid holds 93 to 97 %, calibration error included";
+  EXPECT_LT(beyond, 0.07 * trials);
+}
+
+// Lindstrom, "Triangulation made easy", CVPR 2010, niter2: the closed-form least-squares correction of two ideal pixels.
+void correctByLindstrom(const Matrix3d& E, Vector3d* x0, Vector3d* x1) {
+  Eigen::Matrix<double, 2, 3> S;
+  S << 1, 0, 0, 0, 1, 0;
+  const Eigen::Matrix2d E2 = S * E * S.transpose();
+  Eigen::Vector2d n = S * E * *x1, m = S * E.transpose() * *x0;
+  const double a = n.dot(E2 * m), b = (n.squaredNorm() + m.squaredNorm()) / 2, c = x0->dot(E * *x1);
+  const double d = std::sqrt(b * b - a * c), l = c / (b + d);
+  const Eigen::Vector2d dx = l * n, dm = l * m;
+  n -= E2 * dm;
+  m -= E2.transpose() * dx;
+  const double scale = l * 2 * d / (n.squaredNorm() + m.squaredNorm());
+  *x0 -= S.transpose() * (scale * n);
+  *x1 -= S.transpose() * (scale * m);
+}
+
+TEST(Triangulate, AgreesWithTheClosedFormOfTwoIdealViews) {
+  StereoRig rig(false);
+  rig.right.X_WC.linear() = expSO3({0.02, -0.12, 0.03});
+  const Pose X_LR = rig.left.X_WC.inverse() * rig.right.X_WC;
+  const Vector3d t = X_LR.translation();
+  Matrix3d cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  const Matrix3d E = cross * X_LR.linear();   // x0^T E x1 = 0
+  const auto& camera = rig.left.camera;
+  Dice dice(12);
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3d truth = pointSeenByAll({&rig.left, &rig.right}, 0.8, 4, &dice);
+    const auto sightings = sightingsOf({&rig.left, &rig.right}, truth, &dice, 1);
+    const auto point = triangulate(sightings);
+    ASSERT_TRUE(point.ok());
+    Vector3d x0((sightings[0].pixel.x() - camera.cx) / camera.fx, (sightings[0].pixel.y() - camera.cy) / camera.fy, 1);
+    Vector3d x1((sightings[1].pixel.x() - camera.cx) / camera.fx, (sightings[1].pixel.y() - camera.cy) / camera.fy, 1);
+    correctByLindstrom(E, &x0, &x1);
+    const Vector3d v = X_LR.linear() * x1, normal = x0.cross(v);
+    const Vector3d closed = rig.left.X_WC * Vector3d(t.cross(v).dot(normal) / normal.squaredNorm() * x0);
+    EXPECT_LT((point->xyz - closed).norm(), 1e-6 * closed.norm()) << "case " << i;
+  }
 }
 
 TEST(Triangulate, DepthSigmaIsTheTextbooksWithinOnePercent) {
