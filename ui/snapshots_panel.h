@@ -16,8 +16,6 @@ class QToolButton;
 
 namespace longarm::ui {
 
-class CompareDialog;
-
 /// Thumbnails with camera, time and where they are shown.  Double-click shows one in the left pane.  GUI thread only.
 class SnapshotsPanel final : public QWidget {
   Q_OBJECT

@@ -1,4 +1,7 @@
 // Pipes by their outlines, dimensions between vertices, groups, frames and numbers.
+#include <array>
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "session/document/dimension.h"

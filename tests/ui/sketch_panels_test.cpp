@@ -1,4 +1,6 @@
 // Panels and dialogs of the sketch: world, library, numbers, notes, third picture.
+#include <algorithm>
+
 #include <QFileInfo>
 #include <QInputDialog>
 #include <QListWidget>
@@ -8,6 +10,7 @@
 #include <QToolButton>
 #include <gtest/gtest.h>
 
+#include "session/commands/world_commands.h"
 #include "tests/ui/panel_rig.h"
 #include "ui/compare_dialog.h"
 #include "ui/notice_bar.h"
@@ -74,6 +77,57 @@ TEST(WorldPanel, ListsEditsAndRemovesWhatWasAddedEachAsOneUndoStep) {
   for (int i = 0; i < 5; ++i) rig.bench.targeting().undo();
   EXPECT_TRUE(rig.bench.world().items().empty());
   EXPECT_NE(rig.bench.document().item(line), nullptr) << "only the world was undone";
+}
+
+/// The built-in robot standing at home.
+struct PlanRig : EditRig {
+  std::shared_ptr<JointState> joints = std::make_shared<JointState>();
+  PlanRig() {
+    auto workcell = planning::loadBuiltInWorkcell();
+    EXPECT_TRUE(workcell.ok());
+    bench.setWorkcell(std::make_shared<const planning::Workcell>(std::move(*workcell)));
+    const auto& model = *bench.document().workcell()->model;
+    joints->names = model.actuatedNames();
+    joints->positions = model.neutral();
+    for (const auto& [name, value] : bench.document().workcell()->poses.at("home")) {
+      const auto found = std::find(joints->names.begin(), joints->names.end(), name);
+      if (found != joints->names.end()) joints->positions(found - joints->names.begin()) = value;
+    }
+    bench.plans().setJointSource([this] { return joints; });
+  }
+  /// Plans and waits.  @returns the reason of a plan that failed, or "ok".
+  std::string plan(const QString& macro) {
+    int answers = 0;
+    const auto connection = QObject::connect(&bench.plans(), &session::PlanController::planned, [&answers](bool) { ++answers; });
+    const Status started = bench.plans().plan(macro);
+    if (!started) return started.error().message;
+    SimulatedHand::waitFor([&answers] { return answers > 0; }, 60);
+    QObject::disconnect(connection);
+    const auto& record = bench.document().plan();
+    if (!record) return "no answer";
+    return record->plan.ok() ? "ok" : record->plan.reason;
+  }
+};
+
+TEST(SketchedWorld, IsKeptClearOfByPlansWhichGoStaleWhenItChanges) {
+  PlanRig rig;
+  ASSERT_EQ(rig.plan(QStringLiteral("ready")), "ok");
+  const auto path = session::planPath(*rig.bench.document().workcell(), rig.bench.document().plan()->plan);
+  ASSERT_FALSE(path.empty());
+  ASSERT_TRUE(rig.bench.plans().checkFresh(*rig.joints));
+  session::WorldItem body;
+  body.id = rig.bench.document().nextWorldId();
+  body.name = "sketched crate";
+  body.parent = rig.bench.document().workcell()->model->links()[static_cast<std::size_t>(rig.bench.document().workcell()->model->rootLink())].name;
+  body.size.setConstant(0.15);
+  body.X_WO.translation() = path.back();
+  rig.bench.history().push(session::addWorldItem(body));
+  EXPECT_FALSE(rig.bench.plans().checkFresh(*rig.joints)) << "the world is not what the plan was made for";
+  const std::string reason = rig.plan(QStringLiteral("ready"));
+  EXPECT_NE(reason.find("sketched crate"), std::string::npos) << reason;
+  body.obstacle = false;
+  ASSERT_TRUE(rig.bench.world().edit(body));
+  EXPECT_EQ(rig.plan(QStringLiteral("ready")), "ok") << "drawn, but planned through";
 }
 
 TEST(SketchEdits, ExportsTheWorldOffTheGuiThread) {
