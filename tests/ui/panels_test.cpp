@@ -241,7 +241,7 @@ TEST(FileActions, AnOpenedSketchTakesThePlaceOfAnotherWhichUndoBringsBack) {
   EXPECT_TRUE(files.sketchFolder().isEmpty());
 }
 
-struct JogRig : Rig {
+struct JogRig : PanelRig {
   JogRig() {
     bench.setWorkcell(std::make_shared<const planning::Workcell>(*planning::loadBuiltInWorkcell()));
     bench.jog().setRobot(
