@@ -256,7 +256,7 @@ GrabPipe::GrabPipe(GrabPipeOptions options) : m_options(options) {}
 MacroInfo GrabPipe::info() const {
   return {"grab_pipe", "Grab Pipe", "Reaches for the marked pipe from above and closes on its middle.",
           vision::FeatureKind::kLine,
-          {{"radius", "m", m_options.radius, 0.001, 0.2, "Of the pipe."},
+          {{"radius", "m", m_options.radius, 0.001, 0.2, "Of the pipe, where its outlines were not marked."},
            {"stand_off", "m", m_options.standoff, 0.02, 0.3, "Length of the straight last leg."}},
           0.03};
 }
@@ -271,7 +271,8 @@ Plan GrabPipe::plan(const PlanContext& context, const vision::Feature* feature) 
       return PlanningRun(context, "grab_pipe").fail(PlanStatus::kLimits, "Cannot plan: " + arguments.error().message + ".");
     }
     GrabPipeOptions options = m_options;
-    options.radius = (*arguments)["radius"];
+    // What the outlines measured is better than what was assumed of any pipe.
+    options.radius = feature->pipe ? feature->pipe->radius : (*arguments)["radius"];
     options.standoff = (*arguments)["stand_off"];
     return GrabRun(context, *feature, options).run();
   } catch (const std::exception& e) {

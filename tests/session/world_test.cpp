@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "core/text.h"
+#include "planning/macros/grab_pipe.h"
 #include "planning/world/mesh_file.h"
 #include "session/commands/world_commands.h"
 #include "session/document/document_file.h"
@@ -99,6 +100,22 @@ TEST(WorldItem, TakesAPipesAxisAndRadius) {
   EXPECT_NEAR(cylinder.length, pipeFeature().length(), 1e-12);
   EXPECT_NEAR((item.X_WO * Vector3d(0, 0, cylinder.length / 2) - pipeFeature().vertices[1].xyz).norm(), 0, 1e-12);
   EXPECT_NEAR(item.margin_m, 1.96e-3, 1e-6) << "the radius' uncertainty is part of it";
+}
+
+TEST(MeasuredPipe, IsGrabbedByTheRadiusOfItsOutlinesNotByTheAssumedOne) {
+  const auto workcell = planning::loadBuiltInWorkcell();
+  ASSERT_TRUE(workcell.ok()) << workcell.error().message;
+  planning::PlanContext context;
+  context.workcell = &*workcell;
+  context.start = workcell->model->neutral();
+  context.budget_s = 5;
+  vision::Feature pipe = pipeFeature();
+  pipe.pipe->radius = 0.15;
+  const planning::Plan refused = planning::GrabPipe().plan(context, &pipe);
+  EXPECT_FALSE(refused.ok());
+  EXPECT_NE(refused.reason.find(" thick"), std::string::npos) << refused.reason;
+  pipe.pipe.reset();
+  EXPECT_EQ(planning::GrabPipe().plan(context, &pipe).reason.find(" thick"), std::string::npos);
 }
 
 TEST(WorldItem, RefusesWhatHasNoBodyAndSaysWhatToMark) {
