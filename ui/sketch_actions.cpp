@@ -92,7 +92,11 @@ void SketchActions::refreshSelection() {
   }
   const auto& selected = m_targeting.document().selection().items;
   m_actions.setWhyNot(ActionId::kGroup, selected.size() > 1 ? QString() : tr("Select two features or more first."));
-  const bool grouped = std::any_of(selected.begin(), selected.end(), [this](FeatureId id) { return m_targeting.document().item(id)->group != 0; });
+  // An item that has just been removed may still be selected.
+  const bool grouped = std::any_of(selected.begin(), selected.end(), [this](FeatureId id) {
+    const auto* item = m_targeting.document().item(id);
+    return item != nullptr && item->group != 0;
+  });
   m_actions.setWhyNot(ActionId::kUngroup, grouped ? QString() : tr("What is selected is in no group."));
   const bool items = !m_targeting.document().items().empty();
   m_actions.setWhyNot(ActionId::kSelectAll, items ? QString() : tr("There is no feature."));

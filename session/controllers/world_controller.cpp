@@ -20,6 +20,7 @@ std::vector<WorldItem> WorldController::fromSelection(Status* why) const {
   std::vector<vision::Feature> points;
   FeatureId first_point;
   for (const FeatureId id : m_document.selection().items) {
+    if (m_document.item(id) == nullptr) continue;   // Just removed; it leaves the selection next.
     const Measurement& measured = m_document.measurement(id);
     if (!measured.feature) {
       *why = {ErrorCode::kInvalidInput, measured.reason};

@@ -139,6 +139,16 @@ TEST(SketchEdits, ExportsTheWorldOffTheGuiThread) {
   EXPECT_TRUE(SimulatedHand::waitFor([&] { return QFileInfo(path).size() > 100; }, 20));
 }
 
+TEST(SketchEdits, StandsTheRemovalOfWhatIsSelected) {
+  EditRig rig;
+  rig.bench.targeting().select(rig.addPoint({1.5, 0.0, 1.0}));
+  EXPECT_TRUE(rig.actions.at(ActionId::kAddToWorld)->isEnabled());
+  rig.actions.at(ActionId::kDelete)->trigger();
+  EXPECT_FALSE(rig.actions.at(ActionId::kAddToWorld)->isEnabled());
+  rig.bench.targeting().undo();
+  EXPECT_TRUE(rig.actions.at(ActionId::kAddToWorld)->isEnabled());
+}
+
 TEST(SketchEdits, WritesANoteGroupsAndUngroups) {
   EditRig rig;
   const FeatureId first = rig.addLine("Line 1"), second = rig.addLine("Line 2");
