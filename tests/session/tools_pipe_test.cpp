@@ -24,7 +24,7 @@ using vision::SketchKey;
 
 /// A pipe between two points and its outlines as a camera sees them.
 struct TruePipe {
-  Vector3d a{1.5, 0.25, 1.05}, b{1.55, -0.2, 1.0};
+  Vector3d a{1.5, 0.12, 1.25}, b{1.55, 0.02, 0.85};   // Across the baseline.
   double radius = 0.04;
 
   Pose pose() const {
@@ -81,7 +81,7 @@ TEST_P(PipeGesture, MeasuresAxisAndRadiusWithTwoStrokesPerPicture) {
     EXPECT_LT((vertex.xyz - truth.a).cross(d).norm(), 5e-4) << "on the true axis";
   }
 }
-INSTANTIATE_TEST_SUITE_P(Zooms, PipeGesture, testing::Values(0.25, 1.0, 4.0));
+INSTANTIATE_TEST_SUITE_P(Zooms, PipeGesture, testing::Values(1.0, 4.0));
 
 TEST(Solids, OutlinesOfACylinderAreWhereItsSurfaceTurnsAway) {
   Bench bench;
