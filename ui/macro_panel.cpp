@@ -1,6 +1,7 @@
 #include "ui/macro_panel.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QEvent>
 #include <QGridLayout>
@@ -18,7 +19,11 @@ namespace longarm::ui {
 
 namespace {
 
-constexpr int kColumns = 3;
+using Level = planning::ReachAnswer::Level;
+
+constexpr int kMostColumns = 3;
+constexpr int kForSigns = 16;              // Room for the sign of reach [px].
+constexpr int kLeastButton = 48;           // The panel may get so narrow that names are cut [px].
 constexpr int kReplanAfter_ms = 300;       // Steps of a value that follow one another plan once.
 
 // Macros that have an action of their own, with menu and keys.
@@ -57,7 +62,6 @@ MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearanc
   column->addWidget(m_target);
   m_grid = new QGridLayout;
   m_grid->setSpacing(5);
-  for (int i = 0; i < kColumns; ++i) m_grid->setColumnStretch(i, 1);
   column->addLayout(m_grid);
   m_outcome = new QLabel;
   m_outcome->setTextFormat(Qt::PlainText);
@@ -105,6 +109,7 @@ void MacroPanel::bindActions() {
   }
   connect(m_actions.at(ActionId::kReplan), &QAction::triggered, &m_bench, &Workbench::replan);
   connect(m_actions.at(ActionId::kOtherWay), &QAction::triggered, &m_bench, &Workbench::planOtherWay);
+  connect(&m_bench.reach(), &session::ReachController::changed, this, &MacroPanel::showReach);
   connect(&m_replan, &QTimer::timeout, &m_bench, &Workbench::replan);
   connect(m_form, &MacroForm::edited, this, &MacroPanel::replanIfShown);
   connect(m_actions.at(ActionId::kDiscardPlan), &QAction::triggered, &plans, &session::PlanController::discard);
@@ -128,6 +133,7 @@ void MacroPanel::rebuild(const std::vector<session::MacroRow>& rows) {
     button->setProperty("macro", row.name);
     button->setIconSize({20, 20});
     button->setFocusPolicy(Qt::TabFocus);
+    button->setMinimumWidth(kLeastButton);
     button->installEventFilter(this);
     button->hide();
     connect(button, &QPushButton::clicked, this, [this, name = row.name] {
@@ -156,16 +162,29 @@ void MacroPanel::layOut(const std::vector<session::MacroRow>& rows) {
     if (offered(row)) wanted << row.name;
   }
   if (wanted == m_laid_out) return;
-  for (const auto& [name, each] : m_buttons) {
-    m_grid->removeWidget(each);
-    each->setVisible(wanted.contains(name));
-  }
-  for (int place = 0; place < wanted.size(); ++place) {
-    m_grid->addWidget(button(wanted[place]), place / kColumns, place % kColumns);
-    if (place > 0) setTabOrder(button(wanted[place - 1]), button(wanted[place]));
-  }
   m_laid_out = wanted;
+  for (const auto& [name, each] : m_buttons) each->setVisible(wanted.contains(name));
+  for (int i = 1; i < wanted.size(); ++i) setTabOrder(button(wanted[i - 1]), button(wanted[i]));
+  place();
   if (!wanted.contains(m_chosen)) choose({});
+}
+
+void MacroPanel::place() {
+  for (const auto& [name, each] : m_buttons) m_grid->removeWidget(each);
+  m_columns = columnsThatFit();
+  for (int i = 0; i < kMostColumns; ++i) m_grid->setColumnStretch(i, i < m_columns ? 1 : 0);
+  for (int i = 0; i < m_laid_out.size(); ++i) m_grid->addWidget(button(m_laid_out[i]), i / m_columns, i % m_columns);
+}
+
+int MacroPanel::columnsThatFit() const {
+  int widest = 1;
+  for (const auto& name : m_laid_out) widest = std::max(widest, button(name)->sizeHint().width() + kForSigns);
+  return std::clamp((width() - 7) / (widest + 5), 1, kMostColumns);
+}
+
+void MacroPanel::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  if (columnsThatFit() != m_columns) place();
 }
 
 void MacroPanel::choose(const QString& macro) {
@@ -188,13 +207,36 @@ void MacroPanel::showButton(const session::MacroRow& row) {
   const QString why = busy.isEmpty() ? row.reason : busy;
   QPushButton* shown = button(row.name);
   shown->setEnabled(why.isEmpty());
-  shown->setText(row.title + mark(row));
+  showReachOf(row);
+  const auto reach = m_bench.reach().answer(row.name);
   QStringList tip{row.description};
   if (!row.accuracy.isEmpty()) tip << row.accuracy;
+  if (!reach.reason.empty()) tip << QString::fromStdString(reach.reason);
+  if (reach.level != Level::kUnknown && reach.level != Level::kNot) tip << tr("At a glance it can be reached, the tool rolled by %1\u00b0.").arg(QString::number(reach.roll * 180 / M_PI, 'f', 0));
   tip << (why.isEmpty() ? tr("Plans and shows; nothing moves before Play.") : tr("Not now: %1").arg(why));
   shown->setToolTip(tip.join(QLatin1Char('\n')).toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
   const auto action = actionsOfMacros().find(row.name);
   if (action != actionsOfMacros().end()) m_actions.setWhyNot(action->second, why);
+}
+
+// Green, amber, red, and a sign for those who do not tell them apart.
+void MacroPanel::showReachOf(const session::MacroRow& row) {
+  QPushButton* shown = button(row.name);
+  const auto level = m_bench.reach().answer(row.name).level;
+  const char* reach = level == Level::kReached ? "reached" : level == Level::kStrained ? "strained" : level == Level::kNot ? "not" : "";
+  const QString sign = level == Level::kReached ? QStringLiteral("\u2713 ") : level == Level::kStrained ? QStringLiteral("~ ")
+                       : level == Level::kNot ? QStringLiteral("\u2717 ") : QString();
+  shown->setText(sign + row.title + mark(row));
+  if (shown->property("reach").toString() == QLatin1String(reach)) return;
+  shown->setProperty("reach", QLatin1String(reach));
+  shown->style()->unpolish(shown);
+  shown->style()->polish(shown);
+}
+
+void MacroPanel::showReach() {
+  for (const auto& row : m_bench.plans().macros()) {
+    if (m_laid_out.contains(row.name)) showButton(row);
+  }
 }
 
 void MacroPanel::refresh() {

@@ -33,6 +33,7 @@ class MacroPanel final : public QWidget {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   void bindActions();
@@ -40,7 +41,11 @@ class MacroPanel final : public QWidget {
   void refreshPlan();
   void rebuild(const std::vector<session::MacroRow>& rows);
   void layOut(const std::vector<session::MacroRow>& rows);
+  void place();
+  int columnsThatFit() const;
   void showButton(const session::MacroRow& row);
+  void showReach();
+  void showReachOf(const session::MacroRow& row);
   void choose(const QString& macro);
   void replanIfShown(const QString& macro);
   QStringList told(const planning::Plan& plan) const;
@@ -56,6 +61,7 @@ class MacroPanel final : public QWidget {
   QTimer m_replan;
   QString m_chosen;                        // Whose settings are shown.
   QStringList m_laid_out;
+  int m_columns = 0;
   std::map<QString, QPushButton*> m_buttons;
 };
 

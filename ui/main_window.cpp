@@ -63,6 +63,7 @@ void MainWindow::makePanels() {
   m_scene = new ScenePanel(m_bench, *m_actions, m_appearance);
   m_features = new FeaturePanel(m_bench.targeting(), *m_actions, m_appearance);
   m_macros = new MacroPanel(m_bench, *m_actions, m_appearance);
+  m_nudge = new NudgePanel(m_bench);
   m_head = new HeadPanel(m_bench, *m_actions, m_appearance);
   m_jog = new JogPanel(m_bench);
   m_motion = new MotionPanel(m_bench, *m_actions, m_appearance);
@@ -100,10 +101,13 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("correction"), tr("Correction"), scrolled(m_nudge), Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   // Behind the list of features, so that they take no room of their own.
   for (const char* name : {"jog", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
+  m_docks->tabifyDockWidget(dock("head"), dock("correction"));
+  dock("head")->raise();
   m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);

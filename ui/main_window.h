@@ -18,6 +18,7 @@
 #include "ui/macro_panel.h"
 #include "ui/motion_panel.h"
 #include "ui/notice_bar.h"
+#include "ui/nudge_panel.h"
 #include "ui/pictures_area.h"
 #include "ui/scene_panel.h"
 #include "ui/sketch_actions.h"
@@ -108,6 +109,7 @@ class MainWindow final : public QMainWindow {
   PicturesArea* m_pictures;
   ScenePanel* m_scene;
   FeaturePanel* m_features;
+  NudgePanel* m_nudge;
   MacroPanel* m_macros;
   JogPanel* m_jog;
   HeadPanel* m_head;

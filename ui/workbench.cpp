@@ -23,7 +23,7 @@ Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
       m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs),
       m_world(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
-      m_play(m_document, m_plans), m_autosave(m_document, m_jobs, autosave_folder),
+      m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
       m_lens(m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
   // A robot that renders its pictures beside a compiler, or sends them over a poor radio, needs seconds for one.
@@ -50,6 +50,10 @@ void Workbench::connectParts() {
   connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::stateChanged, this, &Workbench::favourPair);
   connect(&m_plans, &session::PlanController::failed, this, &Workbench::said);
+  connect(&m_targeting, &session::TargetingController::liveMeasureChanged, this, &Workbench::lookAtReach);
+  connect(&m_targeting, &session::TargetingController::featuresChanged, this, &Workbench::lookAtReach);
+  connect(&m_plans, &session::PlanController::argumentsChanged, this, &Workbench::lookAtReach);
+  connect(&m_robot, &RobotSession::playerChanged, this, &Workbench::lookAtReach);
   connect(&m_play, &session::PlayController::failed, this, &Workbench::said);
   connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
   connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
@@ -206,6 +210,40 @@ void Workbench::planOtherWay() {
   if (const QString why = whyNotPlan(); !why.isEmpty()) return say(why);
   const Status started = m_plans.planOtherWay();
   if (!started) say(QString::fromStdString(started.error().message));
+}
+
+// What is dragged, or what is selected.
+void Workbench::lookAtReach() {
+  const auto live = m_targeting.liveMeasure();
+  const vision::Feature* selected = m_document.selectedFeature();
+  std::optional<vision::Feature> feature;
+  if (live && live->feature) feature = live->feature;
+  else if (selected != nullptr) feature = *selected;
+  m_reach.setFeature(std::move(feature));
+}
+
+std::optional<Eigen::Matrix3d> Workbench::axesOf(NudgeFrame frame) const {
+  if (frame == NudgeFrame::kBase) return Eigen::Matrix3d::Identity();
+  const auto& workcell = m_document.workcell();
+  const auto joints = m_robot.runtime() != nullptr ? m_robot.runtime()->jointState() : nullptr;
+  if (!workcell || !joints) return std::nullopt;
+  std::string link = workcell->arm.tip_link;
+  if (frame == NudgeFrame::kCamera) {
+    const auto* camera = workcell->camera(m_pane_cameras[0].toStdString());
+    if (camera == nullptr) return std::nullopt;
+    link = camera->link;
+  }
+  const auto index = workcell->model->linkIndex(link);
+  if (!index) return std::nullopt;
+  Eigen::VectorXd q = workcell->model->neutral();
+  workcell->model->assign(*joints, q);
+  return workcell->model->forward(q, *index).linear();
+}
+
+void Workbench::nudge(NudgeFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn) {
+  const auto axes = axesOf(frame);
+  if (!axes) return say(tr("The axes of the correction are not known: no joints yet, or no camera in the left pane."));
+  m_play.nudge({*axes, way, turn});
 }
 
 void Workbench::say(const QString& sentence) {

@@ -21,6 +21,7 @@
 #include "session/controllers/match_controller.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/play_controller.h"
+#include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
 #include "session/controllers/world_controller.h"
@@ -35,6 +36,9 @@ struct RobotChoice {
   QString variant;                         ///< Of the built-in robot: empty or "ptz".
   QString scenario = QStringLiteral("grab_pipe");
 };
+
+/// Whose axes a correction of the tool is given in.
+enum class NudgeFrame { kTool, kBase, kCamera };
 
 /// Panels get a reference to this and bind the parts they need; they never know each other.  GUI thread only.
 class Workbench final : public QObject {
@@ -56,6 +60,7 @@ class Workbench final : public QObject {
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
+  session::ReachController& reach() { return m_reach; }
   session::AimController& aim() { return m_aim; }
   session::JogController& jog() { return m_jog; }
   session::Autosave& autosave() { return m_autosave; }
@@ -84,6 +89,8 @@ class Workbench final : public QObject {
   void plan(const QString& macro);
   void replan();
   void planOtherWay();
+  /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
+  void nudge(NudgeFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
   /// A sentence for the operator.
   void say(const QString& sentence);
 
@@ -98,6 +105,8 @@ class Workbench final : public QObject {
   void connectCalibration();
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
+  void lookAtReach();
+  std::optional<Eigen::Matrix3d> axesOf(NudgeFrame frame) const;
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -110,6 +119,7 @@ class Workbench final : public QObject {
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;
+  session::ReachController m_reach;
   session::AimController m_aim;
   session::JogController m_jog;
   session::Autosave m_autosave;

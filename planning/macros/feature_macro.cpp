@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "planning/macros/accuracy.h"
+#include "planning/macros/job_reach.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
 
@@ -23,6 +24,13 @@ Eigen::Vector3d meanOf(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
+void sortParts(ToolJob& job) {
+  for (TaskPart& part : job.parts) {
+    std::stable_sort(part.tasks.begin(), part.tasks.end(),
+                     [](const ToolTask& a, const ToolTask& b) { return a.preference < b.preference; });
+  }
+}
+
 }  // namespace
 
 Plan FeatureMacro::plan(const PlanContext& context, const vision::Feature* feature) const {
@@ -31,13 +39,31 @@ Plan FeatureMacro::plan(const PlanContext& context, const vision::Feature* featu
     if (feature == nullptr) {
       return PlanningRun(context, about.name).fail(PlanStatus::kBadFeature, about.title + " needs a " + vision::toString(*about.takes) + ": mark one first.");
     }
-    return run(context, *feature);
+    return run(context, *feature, [this](MacroSetup& setup) { return planJob(setup); });
   } catch (const std::exception& e) {
     return PlanningRun(context, about.name).fail(PlanStatus::kNoPath, std::string("Planning failed inside: ") + e.what());
   }
 }
 
-Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& feature) const {
+ReachAnswer FeatureMacro::reach(const PlanContext& context, const vision::Feature& feature, const ReachSeed& seed) const {
+  ReachAnswer answer;
+  bool described = false;
+  try {
+    const Plan plan = run(context, feature, [&](MacroSetup& setup) {
+      described = true;
+      sortParts(setup.job);
+      answer = reachOfJob(setup.run, setup.job, seed);
+      if (setup.arm_stays) answer.level = ReachAnswer::Level::kReached;
+      return setup.run.plan();
+    });
+    if (!described) answer = {ReachAnswer::Level::kNot, plan.reason, 0, {}};
+  } catch (const std::exception& e) {
+    answer = {ReachAnswer::Level::kUnknown, std::string("Looking failed inside: ") + e.what(), 0, {}};
+  }
+  return answer;
+}
+
+Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& feature, const std::function<Plan(MacroSetup&)>& use) const {
   const MacroInfo about = info();
   PlanningRun run(context, about.name);
   const auto arguments = MacroArguments::from(about, context.arguments);
@@ -58,7 +84,7 @@ Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& featur
     const bool limits = described.error().code == ErrorCode::kOutOfLimits;
     return run.fail(limits ? PlanStatus::kLimits : PlanStatus::kBadFeature, about.title + ": " + described.error().message + ".");
   }
-  return planJob(setup);
+  return use(setup);
 }
 
 Plan FeatureMacro::planJob(MacroSetup& setup) const {
@@ -76,10 +102,7 @@ Plan FeatureMacro::planJob(MacroSetup& setup) const {
     run.plan().goal = setup.X_RT;
     return run.finish();
   }
-  for (TaskPart& part : setup.job.parts) {
-    std::stable_sort(part.tasks.begin(), part.tasks.end(),
-                     [](const ToolTask& a, const ToolTask& b) { return a.preference < b.preference; });
-  }
+  sortParts(setup.job);
   Plan plan = TaskPlanner(run, setup.job).plan();
   if (plan.ok() && setup.measure) setup.measure(space, plan);
   return plan;

@@ -32,13 +32,15 @@ struct MacroSetup {
 class FeatureMacro : public Macro {
  public:
   Plan plan(const PlanContext& context, const vision::Feature* feature) const final;
+  ReachAnswer reach(const PlanContext& context, const vision::Feature& feature, const ReachSeed& seed) const final;
 
  protected:
   /// Describes the job.  @returns an Error whose message ends the plan as a bad feature (kOutOfLimits: as limits).
   virtual Status describe(MacroSetup& setup) const = 0;
 
  private:
-  Plan run(const PlanContext& context, const vision::Feature& feature) const;
+  /// Calls `use` with the described job; what fails before that is the plan that is returned.
+  Plan run(const PlanContext& context, const vision::Feature& feature, const std::function<Plan(MacroSetup&)>& use) const;
   Plan planJob(MacroSetup& setup) const;
 };
 

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "planning/macros/grasp_search.h"
+#include "planning/macros/job_reach.h"
 #include "planning/macros/macro_arguments.h"
 #include "planning/macros/reach_advice.h"
 #include "planning/macros/task_advice.h"
@@ -17,6 +18,7 @@
 namespace longarm::planning {
 namespace {
 
+constexpr double kUpright = 0.6;         // tilt up to which a grasp is as good as one from above [rad]
 constexpr double kConfidence = 1.96;     // 95 % of a normal distribution, two-sided
 
 std::string millimetres(double metres) { return formatFixed(metres * 1000, 1) + " mm"; }
@@ -30,9 +32,11 @@ class GrabRun {
     if (!m_run.begin() || !readPipe() || !checkGripper() || !m_run.leaveContact()) return m_run.plan();
     m_q = withGripperOpen(m_run);
     const WorldObject obstacle = pipeObstacle();
+    m_run.plan().obstacles = {obstacle};
+    m_run.plan().touchable = targetNames(obstacle.name);
     const auto transit_world = m_run.makeWorld({obstacle}, m_q);
     const auto approach_world = m_run.makeWorld({obstacle}, m_q);
-    for (const auto& name : targetNames(obstacle.name)) approach_world->allow(name, m_run.workcell().gripper->links);
+    for (const auto& name : m_run.plan().touchable) approach_world->allow(name, m_run.workcell().gripper->links);
     approach_world->setPadding(std::min(m_options.approach_padding, approach_world->padding()),
                                approach_world->selfPadding());
     forgetRepeatedNotes();
@@ -43,6 +47,30 @@ class GrabRun {
                         "With the gripper open, " + contact.sentence() + " where the arm stands. Move the arm clear of the pipe first.", 0);
     }
     return search(transit, approach);
+  }
+
+  ReachAnswer reach(const ReachSeed& seed) {
+    ToolJob job;
+    if (!m_run.begin() || !readPipe() || !checkGripper()) return {ReachAnswer::Level::kNot, m_run.plan().reason, 0, {}};
+    TaskPart part;
+    for (const auto& grasp : graspsAt(m_pipe, 0)) {
+      ToolTask task;
+      task.X_entry = grasp.X_RT * Eigen::Translation3d(0, 0, -m_options.standoff);
+      ToolPath path(task.X_entry);
+      path.lineTo(grasp.X_RT);
+      task.stages.push_back({"approach", path, m_run.workcell().approach_speed, true, true});
+      task.preference = std::abs(grasp.tilt) < kUpright ? 0 : 1;
+      part.tasks.push_back(std::move(task));
+    }
+    std::stable_sort(part.tasks.begin(), part.tasks.end(), [](const ToolTask& a, const ToolTask& b) { return a.preference < b.preference; });
+    job.subject = "its middle";
+    job.place = m_pipe.middle;
+    job.parts.push_back(std::move(part));
+    job.obstacles = {pipeObstacle()};
+    job.touchable = targetNames(job.obstacles.front().name);
+    job.open_gripper = true;
+    job.touch_padding = m_options.approach_padding;
+    return reachOfJob(m_run, job, seed);
   }
 
  private:
@@ -261,22 +289,38 @@ MacroInfo GrabPipe::info() const {
           0.03};
 }
 
+Result<GrabPipeOptions> GrabPipe::optionsFor(const PlanContext& context, const vision::Feature& feature) const {
+  const auto arguments = MacroArguments::from(info(), context.arguments);
+  if (!arguments) return arguments.error();
+  GrabPipeOptions options = m_options;
+  // What the outlines measured is better than what was assumed of any pipe.
+  options.radius = feature.pipe ? feature.pipe->radius : (*arguments)["radius"];
+  options.standoff = (*arguments)["stand_off"];
+  return options;
+}
+
 Plan GrabPipe::plan(const PlanContext& context, const vision::Feature* feature) const {
   try {
     if (feature == nullptr) {
       return PlanningRun(context, "grab_pipe").fail(PlanStatus::kBadFeature, "Grab Pipe needs a line: mark the pipe first.");
     }
-    const auto arguments = MacroArguments::from(info(), context.arguments);
-    if (!arguments) {
-      return PlanningRun(context, "grab_pipe").fail(PlanStatus::kLimits, "Cannot plan: " + arguments.error().message + ".");
+    const auto options = optionsFor(context, *feature);
+    if (!options) {
+      return PlanningRun(context, "grab_pipe").fail(PlanStatus::kLimits, "Cannot plan: " + options.error().message + ".");
     }
-    GrabPipeOptions options = m_options;
-    // What the outlines measured is better than what was assumed of any pipe.
-    options.radius = feature->pipe ? feature->pipe->radius : (*arguments)["radius"];
-    options.standoff = (*arguments)["stand_off"];
-    return GrabRun(context, *feature, options).run();
+    return GrabRun(context, *feature, *options).run();
   } catch (const std::exception& e) {
     return PlanningRun(context, "grab_pipe").fail(PlanStatus::kNoPath, std::string("Planning failed inside: ") + e.what());
+  }
+}
+
+ReachAnswer GrabPipe::reach(const PlanContext& context, const vision::Feature& feature, const ReachSeed& seed) const {
+  const auto options = optionsFor(context, feature);
+  if (!options) return {ReachAnswer::Level::kNot, options.error().message, 0, {}};
+  try {
+    return GrabRun(context, feature, *options).reach(seed);
+  } catch (const std::exception& e) {
+    return {ReachAnswer::Level::kUnknown, std::string("Looking failed inside: ") + e.what(), 0, {}};
   }
 }
 

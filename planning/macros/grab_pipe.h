@@ -27,8 +27,10 @@ class GrabPipe final : public Macro {
   explicit GrabPipe(GrabPipeOptions options = {});
   MacroInfo info() const override;
   Plan plan(const PlanContext& context, const vision::Feature* feature) const override;
+  ReachAnswer reach(const PlanContext& context, const vision::Feature& feature, const ReachSeed& seed) const override;
 
  private:
+  Result<GrabPipeOptions> optionsFor(const PlanContext& context, const vision::Feature& feature) const;
   GrabPipeOptions m_options;
 };
 

@@ -8,6 +8,8 @@
 
 namespace longarm::planning {
 
+ReachAnswer Macro::reach(const PlanContext&, const vision::Feature&, const ReachSeed&) const { return {}; }
+
 std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
   std::vector<std::unique_ptr<Macro>> out;
   // The usual ones in the order an operator uses them, then the workcell's own by name.

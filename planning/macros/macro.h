@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/macros/reach_answer.h"
 #include "planning/motion/plan.h"
 #include "vision/sketch/feature.h"
 
@@ -42,6 +43,8 @@ class Macro {
   /// honours context.cancel within 100 ms.
   /// @pre feature is given exactly when info().takes is.
   virtual Plan plan(const PlanContext& context, const vision::Feature* feature) const = 0;
+  /// A quick look at whether it can be done, within context.budget_s; kUnknown from macros that cannot tell.
+  virtual ReachAnswer reach(const PlanContext& context, const vision::Feature& feature, const ReachSeed& seed) const;
 };
 
 /// All macros of a workcell: the canned poses it names, then those for features.

@@ -49,22 +49,28 @@ Eigen::VectorXd withGripperOpen(PlanningRun& run) {
   return q;
 }
 
+TaskWorlds makeTaskWorlds(PlanningRun& run, const ToolJob& job, const Eigen::VectorXd& q) {
+  TaskWorlds worlds{run.makeWorld(job.obstacles, q), run.makeWorld(job.obstacles, q)};
+  auto& notes = run.plan().notes;        // both look at the same start and say the same
+  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+  if (run.workcell().gripper) {
+    for (const auto& name : job.touchable) worlds.touching->allow(name, run.workcell().gripper->links);
+  }
+  worlds.touching->setPadding(std::min(job.touch_padding, worlds.touching->padding()), worlds.touching->selfPadding());
+  return worlds;
+}
+
 Plan TaskPlanner::plan() {
   m_q = m_job.open_gripper ? withGripperOpen(m_run) : m_run.configuration();
-  const auto free_world = m_run.makeWorld(m_job.obstacles, m_q);
-  const auto touch_world = m_run.makeWorld(m_job.obstacles, m_q);
-  auto& notes = m_run.plan().notes;      // both worlds look at the same start and say the same
-  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
-  if (m_run.workcell().gripper) {
-    for (const auto& name : m_job.touchable) touch_world->allow(name, m_run.workcell().gripper->links);
-  }
-  touch_world->setPadding(std::min(m_job.touch_padding, touch_world->padding()), touch_world->selfPadding());
+  const TaskWorlds worlds = makeTaskWorlds(m_run, m_job, m_q);
+  m_run.plan().obstacles = m_job.obstacles;
+  m_run.plan().touchable = m_job.touchable;
   Contact contact;
-  if (free_world->touching(m_q, &contact)) {
+  if (worlds.free->touching(m_q, &contact)) {
     return m_run.fail(PlanStatus::kStartInCollision,
                       "Where the arm stands, " + contact.sentence() + ". Move it clear of " + m_job.subject + " first.", 0);
   }
-  const ArmSpace free(m_run.workcell(), *free_world, m_q), touching(m_run.workcell(), *touch_world, m_q);
+  const ArmSpace free(m_run.workcell(), *worlds.free, m_q), touching(m_run.workcell(), *worlds.touching, m_q);
   TaskSearch ways(m_run, free, touching);
   if (!search(ways, free)) {
     m_run.plan().min_clearance = 0;

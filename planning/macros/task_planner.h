@@ -4,6 +4,7 @@
 /// Tasks into timed motions: everything known to be possible before the first stage is planned in detail.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ struct ToolJob {
 
 /// The full configuration with the gripper open, and a note in the plan where it was not; unchanged without a gripper.
 Eigen::VectorXd withGripperOpen(PlanningRun& run);
+
+/// What a job is searched in.
+struct TaskWorlds {
+  std::unique_ptr<CollisionWorld> free;      ///< Everything is an obstacle.
+  std::unique_ptr<CollisionWorld> touching;  ///< The gripper's links may touch what the job touches.
+};
+/// @param q  Full configuration that other joints keep.
+TaskWorlds makeTaskWorlds(PlanningRun& run, const ToolJob& job, const Eigen::VectorXd& q);
 
 /// One run of a job.  Fills the run's plan: stages, trajectory, clearance, goal, status.
 class TaskPlanner {

@@ -80,7 +80,8 @@ struct TaskSearch::Rough {
 };
 
 TaskSearch::TaskSearch(PlanningRun& run, const ArmSpace& free, const ArmSpace& touching)
-    : m_run(run), m_free(free), m_touching(touching), m_solver(run.workcell().model, run.workcell().arm, free.full(run.start())) {
+    : m_run(run), m_free(free), m_touching(touching), m_solver(run.workcell().model, run.workcell().arm, free.full(run.start())),
+      m_reach(reachOf(run.workcell(), free.full(run.start()))) {
   m_solver.setLimits(free.lower(), free.upper());
 }
 
@@ -208,6 +209,65 @@ std::optional<FollowedTask> TaskSearch::refine(const ToolTask& task, const Rungs
   return out;
 }
 
+// Both are borrowed by the ladder.
+void TaskSearch::watch(const ToolTask& task, Rungs& rungs) {
+  rungs.ladder.stop = [this] { return stop(); };
+  rungs.ladder.valid = [this, &task, &rungs](std::size_t rung, const Eigen::VectorXd& arm) {
+    const bool touching = rung > 0 && task.stages[rungs.stage[rung]].touching;
+    Contact contact;
+    if ((touching ? m_touching : m_free).valid(arm, &contact)) return true;
+    m_rung_contact = contact;
+    return false;
+  };
+}
+
+std::optional<ReachSeed> TaskSearch::glanceAt(const TaskPart& part, int k, const Eigen::VectorXd& start, double roll, int restarts) {
+  const ToolTask& task = part.tasks[static_cast<std::size_t>(k)];
+  Rungs rungs(task);
+  watch(task, rungs);
+  ReachSeed out{k, roll, start};
+  if (!part.from_here) {
+    const Pose X = rolled(rungs.ladder.X_RT.front(), roll);
+    IkOptions options;
+    options.restarts = restarts;
+    options.seed = m_run.context().seed;
+    const bool far = (X.translation() - m_reach.shoulder).norm() > m_reach.length;
+    const auto solved = far ? Result<IkSolution>(ErrorCode::kNoSolution, "") : m_solver.solve(X, start, options);
+    if (!solved) {
+      ++m_refusals.unreachable;
+      return {};
+    }
+    out.entry = solved->joints;
+    if (!rungs.ladder.valid(0, out.entry)) {
+      ++m_refusals.colliding;
+      m_refusals.contact = *m_rung_contact;
+      return {};
+    }
+  }
+  std::size_t reached = 0;
+  m_rung_contact.reset();
+  if (!followRungs(m_solver, rungs.ladder, out.entry, roll, {}, reached).joints.empty()) return out;
+  noteStop(task, rungs, reached, m_rung_contact);
+  return {};
+}
+
+std::optional<ReachSeed> TaskSearch::glance(const TaskPart& part, const Eigen::VectorXd& from, const ReachSeed& seed) {
+  const int count = static_cast<int>(part.tasks.size());
+  std::optional<ReachSeed> again;
+  if (seed.task >= 0 && seed.task < count && seed.entry.size() == from.size()) again = glanceAt(part, seed.task, seed.entry, seed.roll, 0);
+  const int best = part.tasks.front().preference;
+  if (again && part.tasks[static_cast<std::size_t>(again->task)].preference == best) return again;
+  for (int k = 0; k < count; ++k) {
+    if (again && part.tasks[static_cast<std::size_t>(k)].preference > best) return again;
+    const std::vector<double> rolls = part.from_here ? std::vector<double>{0} : rollsOf(part.tasks[static_cast<std::size_t>(k)]);
+    for (const double roll : rolls) {
+      if (stop()) return again;
+      if (auto found = glanceAt(part, k, from, roll, 1)) return found;
+    }
+  }
+  return again;
+}
+
 std::vector<FollowedTask> TaskSearch::find(const TaskPart& part, std::size_t first, std::size_t last,
                                            const Eigen::VectorXd& from, std::size_t enough) {
   struct Way {
@@ -222,14 +282,7 @@ std::vector<FollowedTask> TaskSearch::find(const TaskPart& part, std::size_t fir
     const ToolTask& task = part.tasks[i];
     rungs.emplace_back(task);
     Rungs& mine = rungs.back();
-    mine.ladder.stop = [this] { return stop(); };
-    mine.ladder.valid = [this, &task, &mine](std::size_t rung, const Eigen::VectorXd& arm) {
-      const bool touching = rung > 0 && task.stages[mine.stage[rung]].touching;
-      Contact contact;
-      if ((touching ? m_touching : m_free).valid(arm, &contact)) return true;
-      m_rung_contact = contact;
-      return false;
-    };
+    watch(task, mine);
     for (Rough& rough : roughWays(part, task, mine, from, kRoughMost)) ways.push_back({&task, rungs.size() - 1, std::move(rough)});
   }
   std::stable_sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.rough.cost < b.rough.cost; });

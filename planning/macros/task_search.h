@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "planning/macros/planning_run.h"
+#include "planning/macros/reach_advice.h"
+#include "planning/macros/reach_answer.h"
 #include "planning/macros/tool_task.h"
 #include "planning/motion/ladder.h"
 #include "planning/motion/straight_leg.h"
@@ -47,12 +49,16 @@ class TaskSearch {
   /// coarse stations come before any fine waypoint.  Empty: see refusals(), or the run was interrupted.
   std::vector<FollowedTask> find(const TaskPart& part, std::size_t first, std::size_t last, const Eigen::VectorXd& from,
                                  std::size_t enough);
+  /// A look at entries and coarse stations only: the first way of the part that is free, tried first as `seed` did it.
+  std::optional<ReachSeed> glance(const TaskPart& part, const Eigen::VectorXd& from, const ReachSeed& seed);
   const TaskRefusals& refusals() const { return m_refusals; }
   const ArmSpace& spaceOf(const ToolStage& stage) const { return stage.touching ? m_touching : m_free; }
 
  private:
   struct Rungs;
   struct Rough;
+  void watch(const ToolTask& task, Rungs& rungs);
+  std::optional<ReachSeed> glanceAt(const TaskPart& part, int task, const Eigen::VectorXd& start, double roll, int restarts);
   std::vector<Rough> entries(const TaskPart& part, const ToolTask& task, const Rungs& rungs, const Eigen::VectorXd& from);
   void addPostures(const Pose& X_RT, double roll, const Rungs& rungs, const Eigen::VectorXd& from, std::vector<Rough>& out);
   std::vector<Rough> roughWays(const TaskPart& part, const ToolTask& task, const Rungs& rungs, const Eigen::VectorXd& from,
@@ -68,6 +74,7 @@ class TaskSearch {
   const ArmSpace& m_free;
   const ArmSpace& m_touching;
   IkSolver m_solver;
+  Reach m_reach;
   TaskRefusals m_refusals;
   std::optional<Contact> m_rung_contact;         // why the last rung that was refused was
 };

@@ -44,6 +44,8 @@ struct Plan {
   std::optional<Pose> failed_pose;                ///< X_root_tip that was refused, to mark in the scene.
   Trajectory trajectory;                          ///< Of the arm's joints; empty unless ok.
   std::vector<PlanStage> stages;
+  std::vector<WorldObject> obstacles;             ///< Bodies of the feature that it was planned around.
+  std::vector<std::string> touchable;             ///< Bodies that the gripper may touch in the end.
   Eigen::VectorXd start_configuration;            ///< Full q the plan was made for.
   Eigen::VectorXd entry;                          ///< Arm joints where the first free motion ends; empty without one.
   Pose goal = Pose::Identity();                   ///< X_root_tip at the end.

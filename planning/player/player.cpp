@@ -282,6 +282,17 @@ Status Player::scrub(double tau) {
   return {};
 }
 
+Status Player::standAt(double tau) {
+  const bool still = m_impl->state == PlayerState::kReady || m_impl->state == PlayerState::kPaused || m_impl->state == PlayerState::kDone;
+  if (!still) return {ErrorCode::kRefused, "stand: nothing is loaded, or the arm does not stand on it"};
+  if (!std::isfinite(tau) || tau < 0 || tau > duration()) {
+    return {ErrorCode::kInvalidInput, "stand: the time " + formatNumber(tau) + " is not within 0 ... " + formatNumber(duration()) + " s"};
+  }
+  m_impl->standAt(tau);
+  m_impl->state = PlayerState::kPaused;
+  return {};
+}
+
 void Player::halt() {
   if (m_impl->state == PlayerState::kEmpty) return;
   m_impl->standAt(m_impl->current().tau);

@@ -37,6 +37,9 @@ class Player {
   void setSpeed(double factor);
   /// Moves the cursor while not moving (preview only; never moves the robot).  @returns kRefused while playing.
   Status scrub(double tau);
+  /// Stands at `tau`, as after a pause: for a trajectory that passes where the arm stands, e.g. one with a correction in
+  /// it.  The caller has made sure that it does.  @returns kRefused while moving, halted or empty, kInvalidInput.
+  Status standAt(double tau);
   void halt();                           ///< STOP was pressed or a fault came: nothing moves until load() or resumeFrom().
   /// After a halt: re-attaches to the path at the measured joints if they lie within `tolerance` [rad] of it.
   Status resumeFrom(const Eigen::VectorXd& measured, double tolerance = 0.01);

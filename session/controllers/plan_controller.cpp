@@ -46,7 +46,7 @@ void PlanController::rebuildMacros() {
   cancel();
   m_macros.reset();
   if (!m_document.workcell()) return;
-  m_macros = std::make_shared<Macros>(planning::makeMacros(*m_document.workcell()));
+  m_macros = std::make_shared<const MacroList>(planning::makeMacros(*m_document.workcell()));
 }
 
 QString PlanController::whyNot(const planning::MacroInfo& info) const {
@@ -153,18 +153,31 @@ Status PlanController::plan(const QString& name, std::vector<Eigen::VectorXd> av
   return {};
 }
 
-void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
+// The feature that the macro acts on: its own body is no obstacle.
+FeatureId PlanController::targetOf(const QString& name) const {
+  const planning::Macro* found = macro(name);
+  return found != nullptr && found->info().takes ? m_document.selection().primary : FeatureId{};
+}
+
+std::optional<planning::PlanContext> PlanController::contextOf(const QString& name) const {
   const auto workcell = m_document.workcell();
+  const auto joints = m_joints ? m_joints() : nullptr;
+  if (!workcell || !joints) return std::nullopt;
   planning::PlanContext context;
   context.workcell = workcell.get();
   context.start = workcell->model->neutral();
-  workcell->model->assign(*m_joints(), context.start);
-  const FeatureId target = info.takes ? m_document.selection().primary : FeatureId{};
-  context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), target);
-  context.arguments = arguments(QString::fromStdString(info.name));
-  context.avoid = avoid;
+  workcell->model->assign(*joints, context.start);
+  context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), targetOf(name));
+  context.arguments = arguments(name);
   context.seed = m_seed;
   context.budget_s = m_budget_s;
+  return context;
+}
+
+void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
+  const auto workcell = m_document.workcell();
+  planning::PlanContext context = *contextOf(QString::fromStdString(info.name));
+  context.avoid = avoid;
   m_cancel = CancelToken();
   context.cancel = m_cancel;
   m_live = std::make_shared<Progress>();
@@ -173,7 +186,7 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, target, {}, std::move(avoid), m_document.world()};
+  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world()};
   if (info.takes) request.feature = *m_document.selectedFeature();
   m_progress = 0;
   m_progress_text.clear();

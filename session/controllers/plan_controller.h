@@ -35,6 +35,8 @@ struct MacroRow {
 /// Values of macros' parameters, by macro and parameter, where they differ from the defaults.
 using MacroSettings = std::map<std::string, std::map<std::string, double>>;
 
+using MacroList = std::vector<std::unique_ptr<planning::Macro>>;
+
 /// GUI thread only.  A finished plan, good or bad, becomes Document::plan().
 class PlanController final : public QObject {
   Q_OBJECT
@@ -65,6 +67,12 @@ class PlanController final : public QObject {
   QString progressText() const { return m_progress_text; }
   QString planning() const { return m_planning; }      ///< Name of the macro being planned; empty: none.
 
+  /// The workcell's macros; null without one.  They refer to nothing but themselves.
+  std::shared_ptr<const MacroList> macroList() const { return m_macros; }
+  std::shared_ptr<const planning::Workcell> workcell() const { return m_document.workcell(); }
+  /// What a macro would be planned with now; nothing while workcell or joints are unknown.  The workcell must be kept.
+  std::optional<planning::PlanContext> contextOf(const QString& macro) const;
+
   /// Canned motions when nothing is selected, those for the primary selection's kind otherwise.
   std::vector<MacroRow> macros() const;
   /// Starts planning; what was under way is cancelled and its result dropped.  @returns kRefused with the reason.
@@ -91,7 +99,6 @@ class PlanController final : public QObject {
   void failed(const QString& sentence);
 
  private:
-  using Macros = std::vector<std::unique_ptr<planning::Macro>>;
   struct Progress;
   /// What a plan was asked for, as it was then.
   struct Request {
@@ -106,6 +113,7 @@ class PlanController final : public QObject {
   void rebuildMacros();
   QString whyNot(const planning::MacroInfo& info) const;
   Status plan(const QString& macro, std::vector<Eigen::VectorXd> avoid);
+  FeatureId targetOf(const QString& macro) const;
   void start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid);
   Status selectPlanned();
   void judge(const planning::MacroInfo& info, MacroRow& row) const;
@@ -117,7 +125,7 @@ class PlanController final : public QObject {
 
   Document& m_document;
   JobRunner& m_jobs;
-  std::shared_ptr<Macros> m_macros;
+  std::shared_ptr<const MacroList> m_macros;
   std::function<std::shared_ptr<const JointState>()> m_joints;
   State m_state = State::kIdle;
   CancelToken m_cancel;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace longarm::session {
 
@@ -16,15 +17,15 @@ bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || stat
 
 bool same(const PlayState& a, const PlayState& b) {
   return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing && a.can_play == b.can_play &&
-         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale && a.ask == b.ask &&
+         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale && a.ask == b.ask && a.correcting == b.correcting && a.why_not_correct == b.why_not_correct &&
          a.why_not_play == b.why_not_play && a.why_not_back_up == b.why_not_back_up && a.cursor_s == b.cursor_s &&
          a.duration_s == b.duration_s && a.speed == b.speed && a.rate == b.rate;
 }
 
 }  // namespace
 
-PlayController::PlayController(Document& document, PlanController& plans, QObject* parent)
-    : QObject(parent), m_document(document), m_plans(plans) {
+PlayController::PlayController(Document& document, PlanController& plans, JobRunner& jobs, QObject* parent)
+    : QObject(parent), m_document(document), m_plans(plans), m_jobs(jobs) {
   m_observer = m_document.observe([this](const Change& change) {
     if (change.kind == ChangeKind::kPlanChanged) {
       m_cursor = 0;
@@ -58,6 +59,13 @@ void PlayController::refresh(const RuntimeStatus& status) {
     m_off_path.clear();
   }
   forgetOtherPlan();
+  if (m_correction && m_status.player == PlayerState::kDone) finishCorrection();
+  if (!m_nudges.empty() && !isMoving(m_status.player)) correctNext();
+  if (m_status.player == PlayerState::kEmpty) dropCorrections();
+  if (m_status.player == PlayerState::kHalted) {
+    m_nudges.clear();                    // one on its way is finished after Reset and Play
+    m_resume = false;
+  }
   rebuild();
 }
 
@@ -98,6 +106,8 @@ void PlayController::rebuild() {
   next.has_plan = shown != nullptr;
   next.loaded = shown != nullptr && m_loaded.valid() && m_document.plan()->id == m_loaded;
   next.playing = isMoving(m_status.player) && m_loaded.valid();
+  next.correcting = !m_nudges.empty() || m_planning_correction || m_correction.has_value();
+  next.why_not_correct = whyNotCorrect();
   if (shown != nullptr) {
     next.duration_s = shown->trajectory.duration();
     next.cursor_s = next.loaded ? m_status.cursor : std::clamp(m_cursor, 0.0, next.duration_s);
@@ -109,6 +119,7 @@ void PlayController::rebuild() {
       next.why_not_play = QString::fromStdString(shown->accuracy_note);
     }
     if (next.why_not_play.isEmpty()) next.why_not_play = whyNotMove();
+    if (next.why_not_play.isEmpty() && m_planning_correction) next.why_not_play = tr("The correction is being planned.");
     next.why_not_back_up = !m_off_path.isEmpty() ? m_off_path : next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
     if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
       next.why_not_play = tr("The motion is done. Back up, or plan the next one.");
@@ -184,6 +195,91 @@ void PlayController::scrub(double t_s) {
   } else {
     rebuild();
   }
+}
+
+QString PlayController::whyNotCorrect() const {
+  if (plan() == nullptr || !m_loaded.valid() || m_document.plan()->id != m_loaded) return tr("Corrections are made on a motion under way: press Play first.");
+  if (!m_off_path.isEmpty()) return m_off_path;
+  if (m_status.player == PlayerState::kHalted) return tr("The motion was stopped: press Play first, then pause.");
+  return whyNotMove();
+}
+
+void PlayController::nudge(const planning::Nudge& nudge) {
+  if (const QString why = whyNotCorrect(); !why.isEmpty()) {
+    Q_EMIT failed(why);
+    return;
+  }
+  if (m_nudges.empty() && !m_planning_correction && !m_correction) m_resume = m_status.player == PlayerState::kPlaying;
+  m_nudges.push_back(nudge);
+  // A correction on its way is finished first; any other motion gives way.
+  if (isMoving(m_status.player) && !m_correction) m_runtime->pause();
+  refresh(m_runtime->status());
+}
+
+void PlayController::correctNext() {
+  if (m_planning_correction || m_correction) return;
+  const auto workcell = m_plans.workcell();
+  auto context = m_plans.contextOf(QString::fromStdString(m_document.plan()->macro));
+  if (!context || plan() == nullptr) return dropCorrections();
+  const planning::Nudge nudge = m_nudges.front();
+  m_nudges.erase(m_nudges.begin());
+  m_planning_correction = true;
+  m_jobs.run<planning::CorrectedPlan>(
+      this,
+      [workcell, context = *context, plan = *plan(), tau = m_status.cursor, nudge] { return planning::correctPlan(context, plan, tau, nudge); },
+      [this, id = m_document.plan()->id](Result<planning::CorrectedPlan> corrected) {
+        m_planning_correction = false;
+        const bool same = m_document.plan() && m_document.plan()->id == id && m_loaded == id;
+        if (same) takeCorrection(std::move(corrected));
+        else dropCorrections();
+        rebuild();
+      });
+}
+
+// The robot is given the motion only as far as the corrected pose, so that it rests there.
+void PlayController::takeCorrection(Result<planning::CorrectedPlan> corrected) {
+  if (!corrected) {
+    dropCorrections();
+    Q_EMIT failed(QString::fromStdString(corrected.error().message));
+    return;
+  }
+  Trajectory first = corrected->plan.trajectory;
+  while (first.points.back().t > corrected->reached_s + kAtEnd_s) first.points.pop_back();
+  Status started = m_runtime->load(first, corrected->leave_s);
+  if (started) {
+    PlanRecord record = *m_document.plan();
+    record.plan = corrected->plan;
+    m_correction = *std::move(corrected);
+    m_loaded = {};                       // so that the observer does not unload it
+    m_loaded = m_document.setPlan(std::move(record));
+    m_runtime->setSpeed(std::max(kSlowest, std::abs(m_speed)));
+    started = m_runtime->play();
+  }
+  if (!started) {
+    dropCorrections();
+    Q_EMIT failed(QString::fromStdString(started.error().message));
+  }
+  refresh(m_runtime->status());
+}
+
+void PlayController::finishCorrection() {
+  const planning::CorrectedPlan done = *std::move(m_correction);
+  m_correction.reset();
+  const Status loaded = m_runtime->load(done.plan.trajectory, std::min(done.reached_s, done.plan.trajectory.duration()));
+  if (!loaded) {
+    dropCorrections();
+    Q_EMIT failed(QString::fromStdString(loaded.error().message));
+    return;
+  }
+  m_status = m_runtime->status();
+  const bool more = done.reached_s < done.plan.trajectory.duration() - kAtEnd_s;
+  if (m_nudges.empty() && std::exchange(m_resume, false) && more) play();
+}
+
+void PlayController::dropCorrections() {
+  m_nudges.clear();
+  m_correction.reset();
+  m_resume = false;
 }
 
 }  // namespace longarm::session

@@ -3,9 +3,13 @@
 /// @file
 /// PlayController: from a plan on the table to a motion of the arm, by the operator's Play and by nothing else.
 
+#include <optional>
+#include <vector>
+
 #include <QObject>
 #include <QString>
 
+#include "planning/macros/correction.h"
 #include "session/controllers/plan_controller.h"
 #include "session/robot/robot_runtime.h"
 
@@ -18,9 +22,10 @@ struct PlayState {
   bool playing = false;                    ///< The arm moves along it, or slows down on it.
   bool can_play = false, can_back_up = false;
   bool can_scrub = false;
+  bool correcting = false;                 ///< A correction is planned or carried out.
   bool ask = false;                        ///< The feature is not known as well as the motion needs it: accept it first.
   bool stale = false;                      ///< The robot or the feature is not where the plan was made for: plan again.
-  QString why_not_play, why_not_back_up;   ///< Sentences; empty when it can.
+  QString why_not_play, why_not_back_up, why_not_correct;   ///< Sentences; empty when it can.
   double cursor_s = 0, duration_s = 0;
   double speed = 1, rate = 0;
 };
@@ -32,7 +37,7 @@ class PlayController final : public QObject {
 
  public:
   /// Borrowed; outlive this.
-  PlayController(Document& document, PlanController& plans, QObject* parent = nullptr);
+  PlayController(Document& document, PlanController& plans, JobRunner& jobs, QObject* parent = nullptr);
   ~PlayController() override;
 
   void setRuntime(RobotRuntime* runtime);              ///< Borrowed; null: no robot.
@@ -47,6 +52,10 @@ class PlayController final : public QObject {
   void pause();
   void setSpeed(double factor);                        ///< -2 ... 2; takes effect in motion.
   void scrub(double t_s);                              ///< Moves the shown cursor, never the robot.
+  /// Moves the tool off the path of the loaded motion by a little, checked for collisions; a moving arm pauses for it
+  /// and goes on afterwards, along a way that leads back onto the path.  What was done, corrections too, is backed up
+  /// over as it was.  Several wait for one another.
+  void nudge(const planning::Nudge& nudge);
 
  Q_SIGNALS:
   void changed();                                      ///< state() differs.
@@ -55,6 +64,11 @@ class PlayController final : public QObject {
  private:
   const planning::Plan* plan() const;                  ///< Null unless one that worked is on the table.
   Status load();
+  QString whyNotCorrect() const;
+  void correctNext();
+  void takeCorrection(Result<planning::CorrectedPlan> corrected);
+  void finishCorrection();
+  void dropCorrections();
   void move(double direction);
   void forgetOtherPlan();
   QString whyNotMove() const;
@@ -63,6 +77,7 @@ class PlayController final : public QObject {
 
   Document& m_document;
   PlanController& m_plans;
+  JobRunner& m_jobs;
   RobotRuntime* m_runtime = nullptr;
   RuntimeStatus m_status;
   QString m_off_path;                                  // Why the loaded plan cannot go on from here; empty: it can.
@@ -70,6 +85,10 @@ class PlayController final : public QObject {
   PlanId m_loaded;                                     // The plan the runtime holds; invalid: none of ours.
   double m_cursor = 0, m_speed = 1;
   PlayState m_state;
+  std::vector<planning::Nudge> m_nudges;               // To be done one after another.
+  bool m_planning_correction = false;                  // A job is at it.
+  bool m_resume = false;                               // The arm was moving when the first of them came.
+  std::optional<planning::CorrectedPlan> m_correction; // On the way to its corrected pose.
   int m_observer = 0;
 };
 

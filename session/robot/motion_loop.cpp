@@ -72,7 +72,7 @@ Status MotionLoop::takePlaceOnPath() {
   return resumed || halted ? resumed : at_cursor;
 }
 
-Status MotionLoop::load(const Trajectory& trajectory) {
+Status MotionLoop::load(const Trajectory& trajectory, double at_s) {
   std::lock_guard<std::mutex> lock(m_mutex);
   if (isMoving(m_player.state()))
     return {ErrorCode::kRefused, "load: the arm is moving; pause or stop it first"};
@@ -85,7 +85,9 @@ Status MotionLoop::load(const Trajectory& trajectory) {
     return status;
   }
   m_player.setSpeed(speed);
-  if (auto status = checkAtPath(0); !status) {
+  auto status = at_s > 0 ? m_player.standAt(at_s) : Status();
+  if (status) status = checkAtPath(at_s);
+  if (!status) {
     m_player.clear();
     return status;
   }

@@ -51,7 +51,7 @@ class MotionLoop {
              Report report);
 
   /// As RobotRuntime's functions of the same names.
-  Status load(const Trajectory& trajectory);
+  Status load(const Trajectory& trajectory, double at_s = 0);
   void unload();
   Status play();
   void pause();

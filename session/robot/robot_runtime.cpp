@@ -221,10 +221,10 @@ Result<Eigen::VectorXd> RobotRuntime::configuration() const {
   return q;
 }
 
-Status RobotRuntime::load(const Trajectory& trajectory) {
+Status RobotRuntime::load(const Trajectory& trajectory, double at_s) {
   const auto core = m_impl->current();
   if (!core) return Impl::noRobot();
-  auto status = core->loop().load(trajectory);
+  auto status = core->loop().load(trajectory, at_s);
   m_impl->queue(status ? "load" : "refused", "operator",
                 status ? formatFixed(trajectory.duration(), 2) + " s" : status.error().message);
   return status;

@@ -143,7 +143,8 @@ class RobotRuntime {
 
   /// Takes a trajectory of the arm's joints, cursor at its start.  kStale naming the joint, both values and the
   /// tolerance when the arm is not where the trajectory starts; else as Player::load; kRefused while moving.
-  Status load(const Trajectory& trajectory);
+  /// @param at_s  Where on it the arm stands [s].
+  Status load(const Trajectory& trajectory, double at_s = 0);
   void unload();
   /// Towards the end (or the start, at negative speed).  kStale as load(), kRefused when STOP is latched, the link is
   /// not up, or nothing is loaded.

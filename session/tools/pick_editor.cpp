@@ -279,6 +279,7 @@ LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, cons
   if (edit != nullptr) live.raw = edit->raw;
   const Measurement measurement = document.measure(item);
   live.reason = measurement.reason;
+  live.feature = measurement.feature;
   if (measurement.feature && item.pipe) {
     const vision::Feature& pipe = *measurement.feature;
     const auto& end = pipe.vertices[static_cast<std::size_t>(handle.vertex % 2)];

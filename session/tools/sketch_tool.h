@@ -51,6 +51,7 @@ struct LiveMeasure {
   std::optional<double> depth;                            ///< z in the other picture's camera [m].
   std::optional<double> length, length_plus_minus;        ///< Lines whose two ends are measured; +- 95 % [m].
   std::optional<double> radius, radius_plus_minus;        ///< Measured pipes; +- 95 % [m].
+  std::optional<vision::Feature> feature;                 ///< All of it, when it is measured.
   std::string reason;                                     ///< Why there is no xyz.
   std::vector<std::string> warnings;
 

@@ -38,7 +38,7 @@ class PlayControllerTest : public RuntimeFixture {
   Document m_document;
   JobRunner m_jobs;
   PlanController m_plans{m_document, m_jobs};
-  PlayController m_play{m_document, m_plans};
+  PlayController m_play{m_document, m_plans, m_jobs};
 };
 
 TEST_F(PlayControllerTest, WithoutAPlanSaysWhatToDo) {

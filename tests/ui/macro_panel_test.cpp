@@ -50,6 +50,7 @@ class MacroPanelTest : public ::testing::Test {
   /// Files named by LONGARM_UI_PICTURES, for looking at the panel.
   void look(const char* name) const {
     const QString to = qEnvironmentVariable("LONGARM_UI_PICTURES");
+    QCoreApplication::processEvents();
     if (!to.isEmpty()) panel->grab().save(to + QLatin1Char('/') + QLatin1String(name) + QStringLiteral(".png"));
   }
   QPushButton* button(const char* name) const { return panel->button(QString::fromLatin1(name)); }
@@ -75,6 +76,19 @@ TEST_F(MacroPanelTest, ShowsExactlyWhatTakesTheSelection) {
   look("macro_line");
   bench.document().select({});
   EXPECT_TRUE(shown("home"));
+}
+
+TEST_F(MacroPanelTest, TakesFewerColumnsWhereItIsNarrow) {
+  select(FeatureKind::kLine, {scene.a, scene.b});
+  EXPECT_LE(panel->minimumSizeHint().width(), 400) << "it shares 1280 px with two others";
+  const auto threeInARow = [this](int width) {
+    panel->resize(width, 400);
+    QCoreApplication::processEvents();
+    return button("grab_pipe")->y() == button("approach_from_side")->y();
+  };
+  EXPECT_TRUE(threeInARow(900));
+  EXPECT_FALSE(threeInARow(400));
+  for (const char* name : {"grab_pipe", "move_around_axis", "extract_along"}) EXPECT_LE(button(name)->geometry().right(), panel->width()) << name;
 }
 
 TEST_F(MacroPanelTest, SaysWhyWhatIsShownCannotBeDone) {

@@ -1,0 +1,47 @@
+#include "planning/macros/job_reach.h"
+
+#include <cmath>
+
+#include "core/text.h"
+#include "planning/macros/reach_advice.h"
+#include "planning/macros/task_planner.h"
+#include "planning/macros/task_search.h"
+
+namespace longarm::planning {
+
+ReachAnswer reachOfJob(PlanningRun& run, const ToolJob& job, const ReachSeed& seed) {
+  using Level = ReachAnswer::Level;
+  ReachAnswer answer;
+  if (job.parts.empty()) return answer;
+  run.keepContact();
+  const Eigen::VectorXd q = job.open_gripper ? withGripperOpen(run) : run.configuration();
+  const TaskWorlds worlds = makeTaskWorlds(run, job, q);
+  const ArmSpace free(run.workcell(), *worlds.free, q), touching(run.workcell(), *worlds.touching, q);
+  TaskSearch search(run, free, touching);
+  const TaskPart& part = job.parts.front();
+  const auto found = search.glance(part, run.start(), seed);
+  const TaskRefusals& refusals = search.refusals();
+  if (found) {
+    answer.seed = *found;
+    answer.roll = found->roll;
+    const bool best = part.tasks[static_cast<std::size_t>(found->task)].preference == part.tasks.front().preference;
+    answer.level = best ? Level::kReached : Level::kStrained;
+    if (!best) answer.reason = "Only from another side or leaning than it should be.";
+    return answer;
+  }
+  answer.level = run.timeUp() ? Level::kStrained : Level::kNot;
+  if (run.timeUp()) {
+    answer.reason = "No way was found at a glance: planning may find one.";
+  } else if (refusals.stopped > 0) {
+    answer.reason = "The stage \"" + refusals.stage + "\" stops after " +
+                    std::to_string(static_cast<int>(100 * (refusals.furthest - std::floor(refusals.furthest)))) + " % of its way" +
+                    (refusals.why.empty() ? "." : ": " + refusals.why + ".");
+  } else if (refusals.colliding > 0) {
+    answer.reason = "The arm would collide there: " + refusals.contact.sentence() + ".";
+  } else {
+    answer.reason = "Out of reach: " + reachAdvice(reachOf(run.workcell(), q), job.subject, job.place) + ".";
+  }
+  return answer;
+}
+
+}  // namespace longarm::planning

@@ -1,0 +1,143 @@
+// Corrections while a motion is played: paused or moving, backed up over, refused with a sentence.
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QObject>
+
+#include "session/controllers/play_controller.h"
+#include "tests/session/runtime_fixture.h"
+
+namespace longarm::session {
+namespace {
+
+using longarm::testing::RuntimeFixture;
+using planning::PlayerState;
+
+class PlayCorrectionTest : public RuntimeFixture {
+ protected:
+  void SetUp() override {
+    if (QCoreApplication::instance() == nullptr) m_app = std::make_unique<QCoreApplication>(m_argc, m_argv);
+    auto loaded = planning::loadBuiltInWorkcell();
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    auto cell = std::make_shared<planning::Workcell>(*std::move(loaded));
+    const auto names = cell->armJointNames();
+    m_home.resize(static_cast<Eigen::Index>(names.size()));
+    for (std::size_t i = 0; i < names.size(); ++i) m_home[static_cast<Eigen::Index>(i)] = cell->poses.at("ready").at(names[i]);
+    m_workcell = cell;
+    start();
+    m_document.setWorkcell(m_workcell);
+    m_plans.setBudget(60);
+    m_plans.setJointSource([this] { return m_runtime->jointState(); });
+    m_play.setRuntime(m_runtime.get());
+    QObject::connect(&m_play, &PlayController::failed, &m_play, [this](const QString& why) { m_failed << why; });
+    plan();
+  }
+
+  void plan() {
+    ASSERT_TRUE(m_plans.plan(QStringLiteral("look_ahead")).ok());
+    waitFor([this] { return m_plans.state() == PlanController::State::kIdle; });
+    ASSERT_TRUE(m_document.plan() && m_document.plan()->plan.ok()) << (m_document.plan() ? m_document.plan()->plan.reason : "");
+  }
+  void waitFor(const std::function<bool()>& done) {
+    QElapsedTimer since;
+    since.start();
+    while (!done() && since.elapsed() < 120000) QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+  }
+  void run(double seconds) {
+    for (double t = 0; t < seconds; t += 0.02) {
+      step(0.02);
+      QCoreApplication::processEvents();
+      m_play.refresh(m_runtime->status());
+    }
+  }
+  // Until nothing of a correction is left to do; the robot's time goes on only between its jobs.
+  void settle() {
+    QElapsedTimer since;
+    since.start();
+    while (m_play.state().correcting && since.elapsed() < 120000) run(0.1);
+  }
+  Pose tool() const {
+    Eigen::VectorXd q = m_workcell->model->neutral();
+    m_workcell->model->assign(*m_runtime->jointState(), q);
+    return m_workcell->model->forward(q, *m_workcell->model->linkIndex(m_workcell->arm.tip_link));
+  }
+  PlayerState player() const { return m_runtime->status().player; }
+
+  int m_argc = 1;
+  char m_name[5] = "test";
+  char* m_argv[2] = {m_name, nullptr};
+  std::unique_ptr<QCoreApplication> m_app;
+  Document m_document;
+  JobRunner m_jobs;
+  PlanController m_plans{m_document, m_jobs};
+  PlayController m_play{m_document, m_plans, m_jobs};
+  QStringList m_failed;
+};
+
+const planning::Nudge kUp{Eigen::Matrix3d::Identity(), {0, 0, 0.005}, {0, 0, 0}};
+
+TEST_F(PlayCorrectionTest, NeedsAMotionUnderWay) {
+  EXPECT_FALSE(m_play.state().why_not_correct.isEmpty());
+  m_play.nudge(kUp);
+  EXPECT_EQ(m_failed.size(), 1);
+  EXPECT_EQ(player(), PlayerState::kEmpty);
+}
+
+TEST_F(PlayCorrectionTest, PausedMovesTheToolByTheStepAndWaitsForPlay) {
+  m_play.play();
+  run(0.4 * m_play.state().duration_s);
+  m_play.pause();
+  run(1);
+  ASSERT_EQ(player(), PlayerState::kPaused);
+  const Eigen::Vector3d before = tool().translation();
+  m_play.nudge(kUp);
+  m_play.nudge(kUp);
+  settle();
+  ASSERT_TRUE(m_failed.isEmpty()) << m_failed.join(QLatin1Char('\n')).toStdString();
+  EXPECT_LT((tool().translation() - before - Eigen::Vector3d(0, 0, 0.01)).norm(), 1e-4);
+  const Eigen::VectorXd rests = measured();
+  run(1);
+  EXPECT_LT((measured() - rests).norm(), 1e-6) << "it waits for Play";
+  EXPECT_TRUE(m_play.state().can_play) << m_play.state().why_not_play.toStdString();
+  m_play.play();
+  run(m_play.state().duration_s + 1);
+  EXPECT_EQ(player(), PlayerState::kDone);
+  EXPECT_LT((tool().translation() - m_document.plan()->plan.goal.translation()).norm(), 1e-3);
+  m_play.backUp();
+  run(m_play.state().duration_s + 2);
+  EXPECT_EQ(player(), PlayerState::kReady);
+  EXPECT_LT((measured() - m_home).norm(), 1e-3) << "back over the correction to where it began";
+}
+
+TEST_F(PlayCorrectionTest, MovingPausesCorrectsAndGoesOnByItself) {
+  m_play.play();
+  run(0.3 * m_play.state().duration_s);
+  ASSERT_EQ(player(), PlayerState::kPlaying);
+  m_play.nudge(kUp);
+  settle();
+  ASSERT_TRUE(m_failed.isEmpty()) << m_failed.join(QLatin1Char('\n')).toStdString();
+  bool corrected = false;
+  for (const auto& stage : m_document.plan()->plan.stages) corrected = corrected || stage.name == "correction";
+  EXPECT_TRUE(corrected);
+  run(m_play.state().duration_s + 1);
+  EXPECT_EQ(player(), PlayerState::kDone) << "without another Play";
+}
+
+TEST_F(PlayCorrectionTest, ARefusedOneLeavesTheMotionAsItWas) {
+  m_play.play();
+  run(0.4 * m_play.state().duration_s);
+  m_play.pause();
+  run(1);
+  const auto id = m_document.plan()->id;
+  const Eigen::VectorXd before = measured();
+  m_play.nudge({Eigen::Matrix3d::Identity(), {0, 0, 5}, {0, 0, 0}});
+  settle();
+  EXPECT_EQ(m_failed.size(), 1);
+  EXPECT_EQ(m_document.plan()->id, id);
+  EXPECT_LT((measured() - before).norm(), 1e-6);
+  m_play.play();
+  run(m_play.state().duration_s + 1);
+  EXPECT_EQ(player(), PlayerState::kDone);
+}
+
+}  // namespace
+}  // namespace longarm::session
