@@ -44,7 +44,10 @@ void Workbench::connectParts() {
     m_play.setRuntime(runtime);
     m_jog.setRobot([runtime](const planning::JogCommand& command) { return runtime->jog(command); },
                    [runtime] { runtime->releaseJog(); });
+    tellObstacles();
   });
+  connect(&m_world, &session::WorldController::changed, this, &Workbench::tellObstacles);
+  connect(&m_robot, &RobotSession::linkChanged, this, &Workbench::tellObstacles);   // a robot started anew knows none
   connect(&m_robot, &RobotSession::polled, this, [this] { m_play.refresh(m_robot.status()); });
   connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
@@ -59,6 +62,18 @@ void Workbench::connectParts() {
   connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
   connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
   connectCalibration();
+}
+
+// What a jog keeps clear of: the workcell's bodies and those that were sketched.
+void Workbench::tellObstacles() {
+  const auto& workcell = m_document.workcell();
+  if (!m_robot.runtime() || !m_robot.linkUp() || !workcell) return;
+  std::vector<planning::WorldObject> objects = workcell->objects;
+  const auto& model = *workcell->model;
+  for (auto& body : session::obstaclesOf(m_document.world(), model.links()[static_cast<std::size_t>(model.rootLink())].name, {})) {
+    objects.push_back(std::move(body));
+  }
+  m_robot.runtime()->setObstacles(objects);
 }
 
 void Workbench::connectCalibration() {

@@ -100,6 +100,7 @@ class Workbench final : public QObject {
 
  private:
   void connectParts();
+  void tellObstacles();
   void chooseCameras();
   void favourPair();
   void connectCalibration();
