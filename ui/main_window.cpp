@@ -97,7 +97,7 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("cameras"), tr("Cameras"), m_cameras, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("features"), tr("Features"), m_features, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("jog"), tr("Jog arm"), scrolled(m_jog), Qt::BottomDockWidgetArea);
-  addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), scrolled(m_head), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
