@@ -97,17 +97,15 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("cameras"), tr("Cameras"), m_cameras, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("features"), tr("Features"), m_features, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("jog"), tr("Jog arm"), scrolled(m_jog), Qt::BottomDockWidgetArea);
-  addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), scrolled(m_head), Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("correction"), tr("Correction"), scrolled(m_nudge), Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   // Behind the list of features, so that they take no room of their own.
-  for (const char* name : {"jog", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
+  for (const char* name : {"jog", "correction", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
-  m_docks->tabifyDockWidget(dock("head"), dock("correction"));
-  dock("head")->raise();
   m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
