@@ -1,0 +1,177 @@
+// The task Calibrate with the virtual robot: a board held before a live camera, and a camera that was knocked.
+#include <cmath>
+
+#include <QComboBox>
+#include <QListWidget>
+#include <QPushButton>
+#include <QTabWidget>
+#include <QTableWidget>
+#include <nlohmann/json.hpp>
+
+#include "planning/world/scenario.h"
+#include "tests/ui/window_fixture.h"
+
+namespace longarm {
+namespace {
+
+using calibration::HealthLevel;
+using session::PickState;
+using ui::SimulatedHand;
+using ui::Task;
+using vision::PaneSide;
+
+Pose poseOf(const nlohmann::json& json) {
+  const auto& p = json.at("xyz");
+  const auto& q = json.at("quaternion_xyzw");
+  const auto number = [](const nlohmann::json& list, std::size_t i) { return list.at(i).get<double>(); };
+  return longarm::poseFrom(Eigen::Vector3d(number(p, 0), number(p, 1), number(p, 2)), Eigen::Vector4d(number(q, 0), number(q, 1), number(q, 2), number(q, 3)));
+}
+
+class CalibrateWithRobot : public tests::WindowFixture {
+ protected:
+  void openScenario(const QString& scenario, const QSize& size = {1280, 800}) {
+    openWindow(QStringLiteral("dark"), size);
+    ui::RobotChoice choice;
+    choice.scenario = scenario;
+    bench->openRobot(choice);
+    ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().linkUp(); }, 60)) << bench->robot().status().link_text;
+  }
+  nlohmann::json truth() { return nlohmann::json::parse(bench->robot().runtime()->callService("/virtual_robot/truth", "{}", 10).value()); }
+  Pose trueCamera(const std::string& camera) { return poseOf(truth().at("links").at(bench->document().workcell()->camera(camera)->link)); }
+  void takePair() {
+    const auto before = bench->document().paneSnapshotId(PaneSide::kRight);
+    for (int tries = 0; tries < 6 && bench->document().paneSnapshotId(PaneSide::kRight) == before; ++tries) {
+      SimulatedHand::pump(300);
+      bench->takePair();
+      SimulatedHand::waitFor([this] { return bench->snapshots().state() == session::SnapshotController::State::kIdle; }, 60);
+    }
+    ASSERT_NE(bench->document().paneSnapshotId(PaneSide::kRight), before) << window->strip()->message().toStdString();
+  }
+  // Marks the pipe's ends freely in both pictures, where the true cameras see them.
+  FeatureId markPipe(const std::array<Eigen::Vector3d, 2>& ends) {
+    session::SketchItem item;
+    item.id = bench->document().nextFeatureId();
+    item.kind = vision::FeatureKind::kLine;
+    item.name = bench->document().freeName(item.kind);
+    for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+      const auto snapshot = bench->document().paneSnapshot(side);
+      const Pose X_WC = trueCamera(snapshot->view.name);
+      for (int i = 0; i < 2; ++i) {
+        const auto pixel = snapshot->view.camera.project(X_WC.inverse() * ends[static_cast<std::size_t>(i)]);
+        EXPECT_TRUE(pixel.ok());
+        if (pixel) item.setPick(snapshot->id, i, {*pixel + Eigen::Vector2d(0.2 * i, -0.2), side == PaneSide::kLeft ? PickState::kFree : PickState::kReleased});
+      }
+    }
+    bench->document().insertItem(bench->document().items().size(), item);
+    bench->document().select(session::Selection::of(item.id));
+    return item.id;
+  }
+  std::array<Eigen::Vector3d, 2> pipeEnds() {
+    const auto scenario = planning::loadScenario("grab_pipe").value();
+    const double half = std::get<planning::Cylinder>(scenario.object("pipe")->body.shape).length / 2;
+    for (const auto& object : truth().at("objects")) {
+      if (object.at("name") != "pipe") continue;
+      const Pose X_WO = poseOf(object.at("pose"));
+      return {X_WO * Eigen::Vector3d(0, 0, -half), X_WO * Eigen::Vector3d(0, 0, half)};
+    }
+    return {};
+  }
+  double missOfPipe(FeatureId id, const std::array<Eigen::Vector3d, 2>& ends) {
+    const auto& feature = bench->document().measurement(id).feature;
+    if (!feature) return 1e9;
+    return std::max((feature->vertices[0].xyz - ends[0]).norm(), (feature->vertices[1].xyz - ends[1]).norm());
+  }
+};
+
+TEST_F(CalibrateWithRobot, ABoardHeldBeforeALiveCameraGivesItsTrueLens) {
+  openScenario(QStringLiteral("calibration_board"));
+  window->tasks()->setTask(Task::kCalibrate);
+  auto* panel = window->calibrate()->intrinsics();
+  calibration::BoardSpec board;
+  board.square = 0.03;
+  panel->setBoard(board);
+  panel->source()->setCurrentIndex(panel->source()->findData(QStringLiteral("head_left")));
+  auto& wizard = bench->calibration().intrinsics();
+  const auto kept = [&] { return wizard.boards().usable().size(); };
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return kept() >= 4; }, 240)) << panel->advice().toStdString();
+  look(QStringLiteral("calibrate-live-1280"));
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return kept() >= 12; }, 400)) << kept() << " views";
+  panel->source()->setCurrentIndex(0);
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return !wizard.solving() && wizard.outcome().has_value(); }, 60)) << wizard.why().toStdString();
+  panel->steps()->setCurrentIndex(2);
+  look(QStringLiteral("calibrate-live-result-1280"));
+  const auto& result = wizard.outcome()->result;
+  const auto true_lens = calibration::lensVector(bench->calibration().fileInUse("head_left")->camera);
+  const auto error = (calibration::lensVector(result.camera) - true_lens).eval();
+  for (const int i : result.estimated.indices()) {
+    const double sigma = std::sqrt(result.covariance(i, i));
+    std::printf("%s %.4f, true %.4f, sigma %.4f: %.2f sigma\n", calibration::lensParameterName(i), true_lens[i] + error[i], true_lens[i], sigma, error[i] / sigma);
+    EXPECT_LT(std::abs(error[i]), 4 * sigma) << calibration::lensParameterName(i);
+  }
+  EXPECT_LT(result.rms_px, 0.5);
+}
+
+TEST_F(CalibrateWithRobot, AKnockedCameraIsNoticedBlocksTheMotionAndIsPutRight) {
+  openScenario(QStringLiteral("grab_pipe"));
+  auto* runtime = bench->robot().runtime();
+  ASSERT_TRUE(runtime->callService("/virtual_robot/fault", R"({"name": "knocked_camera", "target": "head_right"})", 10).ok());
+  takePair();
+  const auto ends = pipeEnds();
+  const FeatureId before = markPipe(ends);
+  markPipe(ends);
+  EXPECT_EQ(bench->health().of("head_right").level, HealthLevel::kKnocked) << bench->health().of("head_right").why;
+  look(QStringLiteral("knocked-target-1280"));
+  const double knocked_m = missOfPipe(before, ends);
+  SimulatedHand::waitFor([this] { return bench->whyNotPlan().isEmpty(); }, 20);
+  bench->plan(QStringLiteral("grab_pipe"));
+  EXPECT_TRUE(window->strip()->message().contains(QStringLiteral("knocked"))) << window->strip()->message().toStdString();
+  EXPECT_FALSE(bench->document().plan().has_value());
+
+  window->tasks()->setTask(Task::kCalibrate);
+  auto* library = window->calibrate()->library();
+  window->calibrate()->showTool(library);
+  for (int row = 0; row < library->cameras()->rowCount(); ++row) {
+    if (library->cameras()->item(row, 0)->text() == QStringLiteral("head_right")) library->cameras()->selectRow(row);
+  }
+  look(QStringLiteral("knocked-library-1280"));
+  Q_EMIT library->poseWanted(QStringLiteral("head_right"));
+  auto* panel = window->calibrate()->pose();
+  ASSERT_TRUE(panel->isVisible());
+  ASSERT_EQ(panel->camera()->currentData().toString(), QStringLiteral("head_right"));
+  auto& pose = bench->pose();
+  ASSERT_TRUE(pose.snapshot() != nullptr);
+  const auto snapshot = pose.snapshot();
+  const auto& model = *bench->document().workcell()->model;
+  Eigen::VectorXd q = model.neutral();
+  model.assign(snapshot->robot_state, q);
+  const Pose X_WC = trueCamera("head_right");
+  int clicked = 0;
+  for (int i = 0; i < panel->landmarks()->count() && clicked < 14; ++i) {
+    const auto at = pose.landmarks()[static_cast<std::size_t>(i)].inRoot(model, q);
+    const auto pixel = at ? snapshot->view.camera.project(X_WC.inverse() * *at) : Result<Eigen::Vector2d>(ErrorCode::kNotFound, "");
+    if (!pixel || !snapshot->view.camera.containsPixel(*pixel, -4)) continue;
+    panel->landmarks()->setCurrentRow(i);
+    hand.click(panel->canvas(), *panel->canvas()->widgetOfPixel(*pixel));
+    ++clicked;
+  }
+  ASSERT_GE(clicked, 6) << "corners that the camera sees";
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return !pose.solving(); }, 60));
+  look(QStringLiteral("knocked-pose-1280"));
+  ASSERT_TRUE(pose.outcome().has_value()) << pose.why().toStdString();
+  ASSERT_TRUE(panel->applyButton()->isEnabled()) << panel->applyButton()->toolTip().toStdString();
+  ASSERT_TRUE(hand.hold(panel->applyButton(), [this] { return bench->calibration().recordInUse("head_right").has_value(); }, 10));
+
+  window->tasks()->setTask(Task::kTarget);
+  takePair();
+  const FeatureId after = markPipe(ends);
+  markPipe(ends);
+  EXPECT_NE(bench->health().of("head_right").level, HealthLevel::kKnocked) << bench->health().of("head_right").why;
+  EXPECT_TRUE(bench->health().whyNotTrust(after).isEmpty());
+  const double mended_m = missOfPipe(after, ends);
+  std::printf("pipe's ends missed by %.1f mm with the knocked camera, %.1f mm after its pose was calibrated from %d corners\n", 1000 * knocked_m, 1000 * mended_m, clicked);
+  EXPECT_LT(mended_m, 0.5 * knocked_m);
+  EXPECT_LT(mended_m, 0.02);
+}
+
+}  // namespace
+}  // namespace longarm
