@@ -55,7 +55,9 @@ int run(int argc, char** argv) {
 #else
   for (const char* name : {"fk_jacobian", "ik", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
 #endif
-  for (auto& contest : paneContests(&skipped)) contests.push_back(std::move(contest));
+  for (auto* more : {&calibrationContests, &poseContests, &paneContests}) {
+    for (auto& contest : (*more)(&skipped)) contests.push_back(std::move(contest));
+  }
   std::vector<Budget> budgets = paneBudgets(&skipped);
   std::vector<std::string> known;
   keepNamed(options.names, &contests, &known);
