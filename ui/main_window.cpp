@@ -11,6 +11,7 @@
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
+#include <QTimer>
 #include <QVBoxLayout>
 
 #include "ui/compare_dialog.h"
@@ -106,9 +107,6 @@ void MainWindow::assemble() {
   // Behind the list of features, so that they take no room of their own.
   for (const char* name : {"jog", "correction", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
-  m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
-  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {560, 262, 310}, Qt::Horizontal);
-  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
   auto* column = m_frame->content();
   m_pages = new QStackedWidget;
   m_pages->addWidget(m_docks);
@@ -117,7 +115,19 @@ void MainWindow::assemble() {
   column->addWidget(m_notices);
   column->addWidget(m_pages, 1);
   column->addWidget(makeBottomBar());
-  m_layout = std::make_unique<WindowLayout>(*this, *m_docks, std::vector<QSplitter*>{m_middle}, m_settings);
+  m_layout = std::make_unique<WindowLayout>(*this, *m_docks, std::vector<QSplitter*>{m_middle}, m_settings, [this] { sizeDocks(); });
+}
+
+void MainWindow::sizeDocks() {
+  const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
+  m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
+  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {495, 250, 385}, Qt::Horizontal);
+  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
+}
+
+void MainWindow::showEvent(QShowEvent* event) {
+  QMainWindow::showEvent(event);
+  if (!event->spontaneous()) QTimer::singleShot(0, this, [this] { m_layout->shown(); });
 }
 
 void MainWindow::addDock(const QString& name, const QString& title, QWidget* panel, Qt::DockWidgetArea area) {

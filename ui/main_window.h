@@ -73,10 +73,12 @@ class MainWindow final : public QMainWindow {
 
  protected:
   void closeEvent(QCloseEvent* event) override;
+  void showEvent(QShowEvent* event) override;
 
  private:
   void makePanels();
   void assemble();
+  void sizeDocks();
   void addDock(const QString& name, const QString& title, QWidget* panel, Qt::DockWidgetArea area);
   QWidget* makeBottomBar();
   QWidget* makeTopBar();

@@ -16,8 +16,10 @@ QString splitterKey(const QSplitter& splitter) { return QStringLiteral("layout/s
 
 }  // namespace
 
-WindowLayout::WindowLayout(QMainWindow& window, QMainWindow& docks, std::vector<QSplitter*> splitters, QSettings& settings)
-    : m_window(window), m_docks(docks), m_splitters(std::move(splitters)), m_settings(settings), m_factory(docks.saveState(kSchema)) {
+WindowLayout::WindowLayout(QMainWindow& window, QMainWindow& docks, std::vector<QSplitter*> splitters, QSettings& settings,
+                           std::function<void()> size)
+    : m_window(window), m_docks(docks), m_splitters(std::move(splitters)), m_settings(settings), m_size(std::move(size)),
+      m_factory(docks.saveState(kSchema)) {
   for (const auto* splitter : m_splitters) m_factory_splitters.push_back(splitter->saveState());
 }
 
@@ -41,6 +43,7 @@ bool WindowLayout::restore() {
     const QByteArray kept = m_settings.value(splitterKey(*splitter)).toByteArray();
     if (!kept.isEmpty()) splitter->restoreState(kept);
   }
+  m_is_factory = false;
   return true;
 }
 
@@ -59,6 +62,12 @@ void WindowLayout::reset() {
   }
   m_docks.restoreState(m_factory, kSchema);
   for (std::size_t i = 0; i < m_splitters.size(); ++i) m_splitters[i]->restoreState(m_factory_splitters[i]);
+  m_is_factory = true;
+  if (m_window.isVisible()) shown();
+}
+
+void WindowLayout::shown() {
+  if (m_is_factory && m_size) m_size();
 }
 
 }  // namespace longarm::ui

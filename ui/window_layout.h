@@ -8,6 +8,7 @@
 #include <QSettings>
 #include <QSplitter>
 #include <QString>
+#include <functional>
 #include <vector>
 
 namespace longarm::ui {
@@ -19,12 +20,16 @@ class WindowLayout final {
 
   /// All borrowed; they outlive this.  What stands now is the factory layout.
   /// @param docks The window that holds the docks; @param window the one on the screen (may be the same).
-  WindowLayout(QMainWindow& window, QMainWindow& docks, std::vector<QSplitter*> splitters, QSettings& settings);
+  /// @param size Gives the docks their factory sizes; may be empty.
+  WindowLayout(QMainWindow& window, QMainWindow& docks, std::vector<QSplitter*> splitters, QSettings& settings,
+               std::function<void()> size = {});
 
   /// @returns false when there was nothing usable: the factory layout stands.
   bool restore();
   void save();
   void reset();
+  /// The window stands on the screen: only now do docks take sizes.
+  void shown();
 
  private:
   bool onScreen() const;
@@ -33,6 +38,8 @@ class WindowLayout final {
   QMainWindow& m_docks;
   std::vector<QSplitter*> m_splitters;
   QSettings& m_settings;
+  std::function<void()> m_size;
+  bool m_is_factory = true;
   QByteArray m_factory;
   std::vector<QByteArray> m_factory_splitters;
 };
