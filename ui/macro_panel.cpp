@@ -95,6 +95,7 @@ MacroPanel::MacroPanel(Workbench& bench, Actions& actions, Appearance& appearanc
 }
 
 void MacroPanel::bindActions() {
+  m_actions.at(ActionId::kDiscardPlan)->setIconText(tr("Discard"));     // on the button; the menu has room for more
   auto& plans = m_bench.plans();
   connect(&plans, &session::PlanController::macrosChanged, this, &MacroPanel::refresh);
   connect(&plans, &session::PlanController::stateChanged, this, &MacroPanel::refresh);

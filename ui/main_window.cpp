@@ -121,7 +121,7 @@ void MainWindow::assemble() {
 void MainWindow::sizeDocks() {
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   m_docks->resizeDocks({dock("cameras")}, {132}, Qt::Horizontal);
-  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {495, 250, 385}, Qt::Horizontal);
+  m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {530, 250, 350}, Qt::Horizontal);
   m_docks->resizeDocks({dock("features"), dock("head"), dock("macros")}, {190, 190, 190}, Qt::Vertical);
 }
 
