@@ -24,9 +24,7 @@ constexpr int kColumnWidth = 350;
 }  // namespace
 
 CalibrateFixturePanel::CalibrateFixturePanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  auto* row = pageRow(this);
   row->addWidget(buildPicture(appearance), 1);
   row->addWidget(buildSide(appearance));
   bind();
@@ -34,12 +32,8 @@ CalibrateFixturePanel::CalibrateFixturePanel(Workbench& bench, Appearance& appea
 }
 
 QWidget* CalibrateFixturePanel::buildPicture(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
-  column->setContentsMargins(4, 4, 4, 4);
-  column->setSpacing(3);
-  auto* row = new QHBoxLayout;
+  const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
+  m_canvas = canvas;
   m_open_fixture = new QPushButton(tr("Open fixture..."), frame);
   m_open_fixture->setToolTip(tr("Where the points are: CSV with x,y,z in metres, or YAML with points or a sliding panel"));
   m_open_picture = new QPushButton(tr("Open picture..."), frame);
@@ -48,23 +42,13 @@ QWidget* CalibrateFixturePanel::buildPicture(Appearance& appearance) {
   m_take = new QPushButton(tr("Use live picture"), frame);
   for (QWidget* each : {static_cast<QWidget*>(m_open_fixture), static_cast<QWidget*>(m_open_picture), static_cast<QWidget*>(m_camera), static_cast<QWidget*>(m_take)}) row->addWidget(each);
   row->addStretch(1);
-  column->addLayout(row);
-  m_canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
-  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
-  style();
-  connect(&appearance, &Appearance::changed, this, style);
-  column->addWidget(m_canvas, 1);
   m_hint = wordLabel(frame, true);
   column->addWidget(m_hint);
   return frame;
 }
 
 QWidget* CalibrateFixturePanel::buildSide(Appearance& appearance) {
-  auto* side = new QFrame(this);
-  side->setObjectName(QStringLiteral("panel"));
-  side->setFixedWidth(kColumnWidth);
-  auto* column = new QVBoxLayout(side);
-  column->setContentsMargins(6, 6, 6, 6);
+  const auto [side, column] = framedColumn(this, kColumnWidth);
   m_fixture = new FixturePicture(appearance, side);
   column->addWidget(m_fixture, 1);
   m_points = plainTable({tr("Point"), tr("x y z m"), tr("Miss px"), tr("Placed")}, side);

@@ -37,15 +37,9 @@ QString px(double value, int decimals = 3) { return QString::number(value, 'f', 
 }  // namespace
 
 CalibrateIntrinsicsPanel::CalibrateIntrinsicsPanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  auto* row = pageRow(this);
   row->addWidget(buildPicture(appearance), 1);
-  auto* side = new QFrame(this);
-  side->setObjectName(QStringLiteral("panel"));
-  side->setFixedWidth(kColumnWidth);
-  auto* column = new QVBoxLayout(side);
-  column->setContentsMargins(6, 6, 6, 6);
+  const auto [side, column] = framedColumn(this, kColumnWidth);
   m_steps = new QTabWidget(side);
   m_steps->addTab(buildBoardStep(), tr("1 Board"));
   m_steps->addTab(buildViewsStep(), tr("2 Pictures"));
@@ -58,12 +52,8 @@ CalibrateIntrinsicsPanel::CalibrateIntrinsicsPanel(Workbench& bench, Appearance&
 }
 
 QWidget* CalibrateIntrinsicsPanel::buildPicture(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
-  column->setContentsMargins(4, 4, 4, 4);
-  column->setSpacing(3);
-  auto* row = new QHBoxLayout;
+  const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
+  m_canvas = canvas;
   m_show = new QComboBox(frame);
   m_show->addItems({tr("Picture and misses"), tr("Coverage of the picture"), tr("Uncertainty of pixels")});
   m_show->setToolTip(tr("What is drawn: the picture with 40-fold misses, where corners were seen, or how sure each pixel's ray is"));
@@ -72,12 +62,6 @@ QWidget* CalibrateIntrinsicsPanel::buildPicture(Appearance& appearance) {
   m_info->setObjectName(QStringLiteral("muted"));
   m_info->setTextFormat(Qt::PlainText);
   row->addWidget(m_info, 1);
-  column->addLayout(row);
-  m_canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
-  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
-  style();
-  connect(&appearance, &Appearance::changed, this, style);
-  column->addWidget(m_canvas, 1);
   return frame;
 }
 

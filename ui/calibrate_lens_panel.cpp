@@ -28,9 +28,7 @@ constexpr int kColumnWidth = 340;
 }  // namespace
 
 CalibrateLensPanel::CalibrateLensPanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  auto* row = pageRow(this);
   row->addWidget(buildPicture(appearance), 1);
   row->addWidget(buildSide(appearance));
   bind();
@@ -38,12 +36,8 @@ CalibrateLensPanel::CalibrateLensPanel(Workbench& bench, Appearance& appearance,
 }
 
 QWidget* CalibrateLensPanel::buildPicture(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
-  column->setContentsMargins(4, 4, 4, 4);
-  column->setSpacing(3);
-  auto* row = new QHBoxLayout;
+  const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
+  m_canvas = canvas;
   m_camera = new QComboBox(frame);
   m_take = new QPushButton(tr("Use live picture"), frame);
   m_open = new QPushButton(tr("Open picture..."), frame);
@@ -56,22 +50,13 @@ QWidget* CalibrateLensPanel::buildPicture(Appearance& appearance) {
   row->addStretch(1);
   row->addWidget(m_follow);
   row->addWidget(m_straightened);
-  column->addLayout(row);
-  m_canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
-  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
-  style();
-  connect(&appearance, &Appearance::changed, this, style);
-  column->addWidget(m_canvas, 1);
   m_hint = wordLabel(frame, true);
   column->addWidget(m_hint);
   return frame;
 }
 
 QWidget* CalibrateLensPanel::buildSide(Appearance& appearance) {
-  auto* side = new QFrame(this);
-  side->setObjectName(QStringLiteral("panel"));
-  side->setFixedWidth(kColumnWidth);
-  auto* column = new QVBoxLayout(side);
+  const auto [side, column] = framedColumn(this, kColumnWidth);
   auto* grid = new QGridLayout;
   for (int i = 0; i < 4; ++i) {
     const auto at = static_cast<std::size_t>(i);

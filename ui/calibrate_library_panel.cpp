@@ -44,9 +44,7 @@ QString ageText(double days) {
 }  // namespace
 
 CalibrateLibraryPanel::CalibrateLibraryPanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  auto* row = pageRow(this);
   row->addWidget(buildTables(appearance), 3);
   row->addWidget(buildDifference(appearance), 2);
   bind();
@@ -54,9 +52,7 @@ CalibrateLibraryPanel::CalibrateLibraryPanel(Workbench& bench, Appearance& appea
 }
 
 QWidget* CalibrateLibraryPanel::buildTables(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
+  const auto [frame, column] = framedColumn(this);
   auto* head = new QLabel(tr("Cameras"), frame);
   head->setObjectName(QStringLiteral("title"));
   column->addWidget(head);
@@ -86,10 +82,8 @@ QWidget* CalibrateLibraryPanel::buildTables(Appearance& appearance) {
 }
 
 QWidget* CalibrateLibraryPanel::buildDifference(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
-  auto* row = new QHBoxLayout;
+  const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
+  m_canvas = canvas;
   auto* title = new QLabel(tr("Against the one in use, at"), frame);
   m_depth = new QDoubleSpinBox(frame);
   m_depth->setRange(0.05, 100);
@@ -99,12 +93,6 @@ QWidget* CalibrateLibraryPanel::buildDifference(Appearance& appearance) {
   row->addWidget(title);
   row->addWidget(m_depth);
   row->addStretch(1);
-  column->addLayout(row);
-  m_canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
-  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
-  style();
-  connect(&appearance, &Appearance::changed, this, style);
-  column->addWidget(m_canvas, 1);
   m_difference = wordLabel(frame);
   m_difference->setMinimumHeight(64);
   column->addWidget(m_difference);

@@ -4,10 +4,13 @@
 
 #include <QComboBox>
 #include <QFileDialog>
+#include <QFrame>
+#include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QProgressBar>
 #include <QTableWidget>
+#include <QVBoxLayout>
 #include <opencv2/imgproc.hpp>
 
 namespace longarm::ui {
@@ -26,6 +29,36 @@ QFileDialog* fileDialog(QWidget* parent, const QString& title, const QStringList
 }
 
 }  // namespace
+
+QHBoxLayout* pageRow(QWidget* page) {
+  auto* row = new QHBoxLayout(page);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(4);
+  return row;
+}
+
+FramedColumn framedColumn(QWidget* page, int width) {
+  auto* frame = new QFrame(page);
+  frame->setObjectName(QStringLiteral("panel"));
+  if (width > 0) frame->setFixedWidth(width);
+  auto* column = new QVBoxLayout(frame);
+  column->setContentsMargins(6, 6, 6, 6);
+  return {frame, column};
+}
+
+PictureFrame pictureFrame(Appearance& appearance, QWidget* page) {
+  const auto [frame, column] = framedColumn(page);
+  column->setContentsMargins(4, 4, 4, 4);
+  column->setSpacing(3);
+  auto* controls = new QHBoxLayout;
+  column->addLayout(controls);
+  auto* canvas = new widgets::ImageCanvas(vision::PaneSide::kLeft, frame);
+  const auto style = [canvas, &appearance] { canvas->setTheme(appearance.theme()); };
+  style();
+  QObject::connect(&appearance, &Appearance::changed, canvas, style);
+  column->addWidget(canvas, 1);
+  return {frame, column, controls, canvas};
+}
 
 QLabel* wordLabel(QWidget* parent, bool muted) {
   auto* label = new QLabel(parent);

@@ -16,8 +16,11 @@
 #include "ui/appearance.h"
 #include "vision/sketch/pointer_event.h"
 #include "widgets/hold_button.h"
+#include "widgets/image_canvas.h"
 
 class QComboBox;
+class QFrame;
+class QHBoxLayout;
 class QLabel;
 class QProgressBar;
 class QTableWidget;
@@ -25,6 +28,23 @@ class QVBoxLayout;
 class QWidget;
 
 namespace longarm::ui {
+
+/// What a page is made of: the parts stand side by side to its very edge.  Owned by the page.
+QHBoxLayout* pageRow(QWidget* page);
+/// A framed column; a width > 0 is fixed.
+struct FramedColumn {
+  QFrame* frame = nullptr;
+  QVBoxLayout* column = nullptr;
+};
+FramedColumn framedColumn(QWidget* page, int width = 0);
+/// A picture in the colours in force, with a row for what chooses it above; more may follow in the column.
+struct PictureFrame {
+  QFrame* frame = nullptr;
+  QVBoxLayout* column = nullptr;
+  QHBoxLayout* controls = nullptr;
+  widgets::ImageCanvas* canvas = nullptr;
+};
+PictureFrame pictureFrame(Appearance& appearance, QWidget* page);
 
 /// A plain-text label over as many lines as it needs.
 QLabel* wordLabel(QWidget* parent, bool muted = false);

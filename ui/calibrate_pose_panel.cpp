@@ -33,18 +33,12 @@ constexpr int kColumnWidth = 340;
 
 CalibratePosePanel::CalibratePosePanel(Workbench& bench, Appearance& appearance, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_appearance(appearance) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  auto* row = pageRow(this);
   m_views = new QSplitter(Qt::Horizontal, this);
   m_views->setChildrenCollapsible(false);
   m_views->addWidget(buildPicture(appearance));
   row->addWidget(m_views, 1);
-  auto* side = new QFrame(this);
-  side->setObjectName(QStringLiteral("panel"));
-  side->setFixedWidth(kColumnWidth);
-  auto* column = new QVBoxLayout(side);
-  column->setContentsMargins(6, 6, 6, 6);
+  const auto [side, column] = framedColumn(this, kColumnWidth);
   m_steps = new QTabWidget(side);
   m_steps->addTab(buildWhatStep(), tr("1 Known things"));
   m_steps->addTab(buildPointsStep(), tr("2 Points"));
@@ -58,24 +52,14 @@ CalibratePosePanel::CalibratePosePanel(Workbench& bench, Appearance& appearance,
 CalibratePosePanel::~CalibratePosePanel() { m_contents.reset(); }
 
 QWidget* CalibratePosePanel::buildPicture(Appearance& appearance) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(frame);
-  column->setContentsMargins(4, 4, 4, 4);
-  column->setSpacing(3);
-  auto* row = new QHBoxLayout;
+  const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
+  m_canvas = canvas;
   m_snapshot = new QComboBox(frame);
   m_snapshot->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   m_snapshot->setToolTip(tr("Which picture is shown; every one may hold points"));
   m_take = new QPushButton(tr("Take picture"), frame);
   row->addWidget(m_snapshot, 1);
   row->addWidget(m_take);
-  column->addLayout(row);
-  m_canvas = new widgets::ImageCanvas(PaneSide::kLeft, frame);
-  const auto style = [this, &appearance] { m_canvas->setTheme(appearance.theme()); };
-  style();
-  connect(&appearance, &Appearance::changed, this, style);
-  column->addWidget(m_canvas, 1);
   m_hint = wordLabel(frame, true);
   column->addWidget(m_hint);
   return frame;

@@ -27,12 +27,8 @@ constexpr int kSettle_ms = 1500;           // Between the two commands of an app
 
 CalibrateZoomPanel::CalibrateZoomPanel(Workbench& bench, Appearance& appearance, QWidget* parent)
     : QWidget(parent), m_bench(bench) {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
-  auto* left = new QFrame(this);
-  left->setObjectName(QStringLiteral("panel"));
-  auto* column = new QVBoxLayout(left);
+  auto* row = pageRow(this);
+  const auto [left, column] = framedColumn(this);
   m_curve = new ZoomCurve(appearance, left);
   column->addWidget(m_curve, 1);
   column->addWidget(buildTable(), 1);
@@ -49,10 +45,7 @@ QWidget* CalibrateZoomPanel::buildTable() {
 }
 
 QWidget* CalibrateZoomPanel::buildSteps() {
-  auto* side = new QFrame(this);
-  side->setObjectName(QStringLiteral("panel"));
-  side->setFixedWidth(340);
-  auto* column = new QVBoxLayout(side);
+  const auto [side, column] = framedColumn(this, 340);
   auto* form = new QFormLayout;
   m_camera = new QComboBox(side);
   m_setting = new QDoubleSpinBox(side);

@@ -44,7 +44,7 @@ struct KeyWay {
 
 // What a key means: right, up and away from the operator.
 std::optional<KeyWay> wayOf(int key, JogFrame frame) {
-  const int across = frame == JogFrame::kBase ? 1 : 0, ahead = frame == JogFrame::kBase ? 0 : frame == JogFrame::kTool ? 2 : 2;
+  const int across = frame == JogFrame::kBase ? 1 : 0, ahead = frame == JogFrame::kBase ? 0 : 2;
   const int height = frame == JogFrame::kBase ? 2 : 1;
   const int right = frame == JogFrame::kBase ? -1 : 1, up = frame == JogFrame::kCamera ? -1 : 1;
   switch (key) {

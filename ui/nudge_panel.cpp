@@ -25,9 +25,9 @@ NudgePanel::NudgePanel(Workbench& bench, QWidget* parent) : QWidget(parent), m_b
   column->setSpacing(5);
   auto* choices = new QHBoxLayout;
   m_frame = new QComboBox(this);
-  m_frame->addItem(tr("tool"), static_cast<int>(NudgeFrame::kTool));
-  m_frame->addItem(tr("base"), static_cast<int>(NudgeFrame::kBase));
-  m_frame->addItem(tr("left picture"), static_cast<int>(NudgeFrame::kCamera));
+  m_frame->addItem(tr("tool"), static_cast<int>(planning::JogFrame::kTool));
+  m_frame->addItem(tr("base"), static_cast<int>(planning::JogFrame::kBase));
+  m_frame->addItem(tr("left picture"), static_cast<int>(planning::JogFrame::kCamera));
   m_frame->setToolTip(tr("Whose axes: the tool's (z out of it), the base's (x forwards, z up), or those of the left picture (x right, y down, z away)"));
   m_step = new QComboBox(this);
   for (const double step : kSteps_mm) m_step->addItem(tr("%1 mm").arg(step), step / 1000);
@@ -69,7 +69,7 @@ void NudgePanel::nudge(int axis, int sign, bool turn) {
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   step[axis] = sign * (turn ? m_angle : m_step)->currentData().toDouble();
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  m_bench.nudge(static_cast<NudgeFrame>(m_frame->currentData().toInt()), turn ? none : step, turn ? step : none);
+  m_bench.nudge(static_cast<planning::JogFrame>(m_frame->currentData().toInt()), turn ? none : step, turn ? step : none);
 }
 
 void NudgePanel::refresh() {

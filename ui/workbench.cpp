@@ -237,27 +237,12 @@ void Workbench::lookAtReach() {
   m_reach.setFeature(std::move(feature));
 }
 
-std::optional<Eigen::Matrix3d> Workbench::axesOf(NudgeFrame frame) const {
-  if (frame == NudgeFrame::kBase) return Eigen::Matrix3d::Identity();
-  const auto& workcell = m_document.workcell();
-  const auto joints = m_robot.runtime() != nullptr ? m_robot.runtime()->jointState() : nullptr;
-  if (!workcell || !joints) return std::nullopt;
-  std::string link = workcell->arm.tip_link;
-  if (frame == NudgeFrame::kCamera) {
-    const auto* camera = workcell->camera(m_pane_cameras[0].toStdString());
-    if (camera == nullptr) return std::nullopt;
-    link = camera->link;
-  }
-  const auto index = workcell->model->linkIndex(link);
-  if (!index) return std::nullopt;
-  Eigen::VectorXd q = workcell->model->neutral();
-  workcell->model->assign(*joints, q);
-  return workcell->model->forward(q, *index).linear();
-}
-
-void Workbench::nudge(NudgeFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn) {
-  const auto axes = axesOf(frame);
-  if (!axes) return say(tr("The axes of the correction are not known: no joints yet, or no camera in the left pane."));
+void Workbench::nudge(planning::JogFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn) {
+  if (m_robot.runtime() == nullptr) return say(tr("No robot is connected."));
+  const auto q = m_robot.runtime()->configuration();
+  if (!q) return say(QString::fromStdString(q.error().message));
+  const auto axes = planning::axesOf(m_robot.runtime()->workcell(), *q, frame, m_pane_cameras[0].toStdString());
+  if (!axes) return say(QString::fromStdString(axes.error().message));
   m_play.nudge({*axes, way, turn});
 }
 

@@ -37,9 +37,6 @@ struct RobotChoice {
   QString scenario = QStringLiteral("grab_pipe");
 };
 
-/// Whose axes a correction of the tool is given in.
-enum class NudgeFrame { kTool, kBase, kCamera };
-
 /// Panels get a reference to this and bind the parts they need; they never know each other.  GUI thread only.
 class Workbench final : public QObject {
   Q_OBJECT
@@ -90,7 +87,7 @@ class Workbench final : public QObject {
   void replan();
   void planOtherWay();
   /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
-  void nudge(NudgeFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
+  void nudge(planning::JogFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
   /// A sentence for the operator.
   void say(const QString& sentence);
 
@@ -107,7 +104,6 @@ class Workbench final : public QObject {
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
   void lookAtReach();
-  std::optional<Eigen::Matrix3d> axesOf(NudgeFrame frame) const;
 
   session::Document m_document;
   session::EditHistory m_history;

@@ -16,22 +16,6 @@ constexpr double kDampFrom = 0.06;         // singular value of the weighted Jac
 constexpr double kMostDamping = 0.06;
 constexpr double kLost = 0.90, kTrue = 0.99;   // cosine between wanted and possible: stands still below, full speed above
 
-Result<Eigen::Matrix3d> axesOf(const Workcell& workcell, const Eigen::VectorXd& q, const JogCommand& command) {
-  const RobotModel& model = *workcell.model;
-  std::string link = workcell.arm.tip_link;
-  if (command.frame == JogFrame::kBase) return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-  if (command.frame == JogFrame::kCamera) {
-    const CameraSpec* camera = workcell.camera(command.camera);
-    if (camera == nullptr) {
-      return Error{ErrorCode::kInvalidInput, "jog: the workcell has no camera \"" + command.camera + "\""};
-    }
-    link = camera->link;
-  }
-  const auto index = model.linkIndex(link);
-  if (!index) return index.error();
-  return Eigen::Matrix3d(model.forward(q, *index).linear());
-}
-
 Status checkCommand(const Workcell& workcell, const JogCommand& command) {
   const auto inside = [](double value) { return std::abs(value) <= 1; };      // false for what is not a number
   const bool good = inside(command.turn) && inside(command.speed) && command.speed >= 0 &&
@@ -64,6 +48,23 @@ JogVelocity solveTwist(const Eigen::MatrixXd& J, const Eigen::VectorXd& twist) {
 
 }  // namespace
 
+Result<Eigen::Matrix3d> axesOf(const Workcell& workcell, const Eigen::VectorXd& q, JogFrame frame, const std::string& name) {
+  if (frame == JogFrame::kJoint) return Error{ErrorCode::kInvalidInput, "single joints have no axes in common"};
+  const RobotModel& model = *workcell.model;
+  std::string link = workcell.arm.tip_link;
+  if (frame == JogFrame::kBase) return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  if (frame == JogFrame::kCamera) {
+    const CameraSpec* camera = workcell.camera(name);
+    if (camera == nullptr) {
+      return Error{ErrorCode::kInvalidInput, "the workcell has no camera \"" + name + "\""};
+    }
+    link = camera->link;
+  }
+  const auto index = model.linkIndex(link);
+  if (!index) return index.error();
+  return Eigen::Matrix3d(model.forward(q, *index).linear());
+}
+
 Eigen::VectorXd withArm(const Workcell& workcell, const Eigen::VectorXd& q, const Eigen::VectorXd& arm) {
   Eigen::VectorXd out = q;
   setGroupPositions(*workcell.model, workcell.arm, arm, out);
@@ -81,7 +82,7 @@ Result<JogVelocity> jogVelocity(const Workcell& workcell, const Eigen::VectorXd&
         command.turn * command.speed * speeds.joint_share * workcell.arm_limits.max_velocity[command.joint];
     return out;
   }
-  const auto axes = axesOf(workcell, q, command);
+  const auto axes = axesOf(workcell, q, command.frame, command.camera);
   if (!axes) return axes.error();
   Eigen::MatrixXd J = workcell.model->jacobian(q, workcell.arm);
   J.topRows(3) *= kMetresPerRadian;

@@ -12,7 +12,7 @@
 
 namespace longarm::planning {
 
-/// Whose axes a jog goes along.
+/// Whose axes the tool is moved along, by a jog or by a correction.
 enum class JogFrame { kJoint, kTool, kBase, kCamera };
 
 struct JogCommand {
@@ -27,6 +27,11 @@ struct JogCommand {
 
   bool isIdle() const { return frame == JogFrame::kJoint ? turn == 0 : linear.isZero() && angular.isZero(); }
 };
+
+/// The axes of tool, base or a camera of the workcell in the root frame, at the full configuration q.
+/// @returns kInvalidInput: no such camera, or kJoint, which has no axes.  Pure function.
+Result<Eigen::Matrix3d> axesOf(const Workcell& workcell, const Eigen::VectorXd& q, JogFrame frame,
+                               const std::string& camera = {});
 
 /// Full speeds of a jog.
 struct JogSpeeds {

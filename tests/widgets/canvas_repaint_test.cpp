@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "tests/widgets/barrel_camera.h"
 #include "widgets/image_canvas.h"
 
 namespace longarm::widgets {
@@ -74,17 +75,6 @@ cv::Mat noise(int width, int height) {
   cv::RNG rng(5);
   rng.fill(picture, cv::RNG::UNIFORM, 0, 256);
   return picture;
-}
-
-vision::CameraModel barrel(int width, int height) {
-  vision::CameraModel camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 0.9 * width;
-  camera.cx = (width - 1) / 2.0;
-  camera.cy = (height - 1) / 2.0;
-  camera.distortion = {-0.2, 0.05, 0.001, -0.0005, 0};
-  return camera;
 }
 
 // Shapes of every kind and role, also outside of the picture.

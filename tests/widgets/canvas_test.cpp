@@ -9,6 +9,7 @@
 #include <QWheelEvent>
 #include <gtest/gtest.h>
 
+#include "tests/widgets/barrel_camera.h"
 #include "widgets/canvas_view.h"
 #include "widgets/image_canvas.h"
 #include "widgets/loupe.h"
@@ -22,17 +23,6 @@ using vision::PointerPhase;
 
 constexpr double kPixelTol = 1e-9;             // pure arithmetic
 constexpr double kLensTol = 1e-6;              // the lens is inverted by iteration
-
-vision::CameraModel barrel(int width, int height) {
-  vision::CameraModel camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 0.9 * width;
-  camera.cx = (width - 1) / 2.0;
-  camera.cy = (height - 1) / 2.0;
-  camera.distortion = {-0.25, 0.05, 0.001, -0.0005, 0};
-  return camera;
-}
 
 cv::Mat grey(int width, int height, int value = 128) { return {height, width, CV_8UC3, cv::Scalar(value, value, value)}; }
 
