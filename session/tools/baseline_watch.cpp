@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kNearest_m = 0.3, kFarthest_m = 10, kUsual_m = 1.5;
+// Where an arm works.  Nearly parallel axes meet far beyond it, and say nothing of what will be marked.
+constexpr double kNearest_m = 0.3, kFarthest_m = 3, kUsual_m = 1.5;
 constexpr double kDegree = M_PI / 180;
 constexpr double kRefused = 0.3 * kDegree, kPoor = 1.0 * kDegree;   // as triangulation refuses and warns
 constexpr double kLittle = 0.15;             // of the picture

@@ -9,7 +9,8 @@
 
 namespace longarm::session {
 
-/// How two views stand to each other, at the depth where their axes meet or, failing that, at 1.5 m.
+/// How two views stand to each other, at the depth where their axes meet or, where that is out of an arm's
+/// reach, at 1.5 m.
 struct Baseline {
   double distance_m = 0;                   ///< Between the cameras.
   double depth_m = 1.5;                    ///< Looked at.

@@ -98,6 +98,20 @@ TEST(BaselineWatch, IsSilentOverAGoodPairAndNamesWhatIsWrongWithABadOne) {
   EXPECT_NE(baselineWarning(scene.left, elsewhere).find("frame"), std::string::npos);
 }
 
+// Bouguet's head: 100 mm apart, toed in so little that the axes meet 7 m away, where nobody works.
+TEST(BaselineWatch, IsSilentOverAHeadWhoseAxesMeetFarAway) {
+  vision::View left;
+  left.camera.fx = left.camera.fy = 533;
+  left.camera.cx = 320;
+  left.camera.cy = 240;
+  left.camera.width = 640;
+  left.camera.height = 480;
+  vision::View right = left;
+  right.X_WC.translation().x() = 0.1;
+  right.X_WC.linear() = Eigen::AngleAxisd(-0.1 / 7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_TRUE(baselineWarning(left, right).empty()) << baselineWarning(left, right);
+}
+
 TEST(BaselineWatch, StatesTheDepthErrorOfTheWorkedFigure) {
   // f 800 px, baseline 0.25 m, 0.5 px, 1.5 m: 7.95 mm.
   vision::View left;
