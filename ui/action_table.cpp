@@ -37,6 +37,8 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kToolTriad, "Sketch", "&Triad (box)", "tool-triad", "X", "Mark a box's corner and the ends of its three edges in both pictures", true},
       {I::kToolMeasure, "Sketch", "&Measure", "tool-measure", "M", "Distance between two handles, or the angle at the second of three", true},
       {I::kAddToWorld, "Sketch", "Add to &world", "world-add", "Ctrl+B", "Make the selected box, plane, pipe or points a body that plans keep clear of"},
+      {I::kAddKeepOut, "Sketch", "Add as &keep-out zone", "", "Ctrl+Shift+B", "Make the selected box, plane, pipe or points a zone that the arm and what it holds never enter"},
+      {I::kAddWorkspace, "Sketch", "Add workspace bo&x", "", "", "Put a box around the arm that it does not leave; change its numbers in the list of bodies"},
 
       {I::kTaskTarget, "View", "Tar&get", "", "F5", "Take pictures, mark what matters, plan and play"},
       {I::kTaskCalibrate, "View", "&Calibrate", "", "F7", "Find out lenses and places of the cameras"},

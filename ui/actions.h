@@ -17,7 +17,7 @@ namespace longarm::ui {
 enum class ActionId {
   kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kExportWorld, kQuit,
   kUndo, kRedo, kDelete, kRename, kDuplicate, kNote, kNumbers, kColour, kGroup, kUngroup, kHide, kLock, kSelectAll, kCancel,
-  kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld,
+  kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld, kAddKeepOut, kAddWorkspace,
   kTaskTarget, kTaskCalibrate,
   kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,

@@ -110,7 +110,9 @@ void HeadPanel::refresh() {
     m_gripper->setText(tr("gripper unknown"));
   } else {
     const QString opening = QString::number(1000 * runtime->gripperPosition(), 'f', 0);
-    m_gripper->setText(runtime->holding() ? tr("HOLDING, at %1 mm").arg(opening) : tr("finger at %1 mm").arg(opening));
+    const auto& held = m_bench.held().held();
+    const QString what = held ? tr("HOLDING %1, at %2 mm").arg(QString::fromStdString(held->body.name)) : tr("HOLDING, at %1 mm");
+    m_gripper->setText(runtime->holding() ? what.arg(opening) : tr("finger at %1 mm").arg(opening));
   }
 }
 

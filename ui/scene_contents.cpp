@@ -65,9 +65,8 @@ bool SceneContents::setJoints(const JointState* joints) {
     look.opacity = ghost ? kGhost : 1;
     m_robot->setLook(look);
   }
-  std::map<std::string, Pose> poses;
-  for (std::size_t i = 0; i < model.links().size(); ++i) poses[model.links()[i].name] = X_WL[i];
-  m_world->update(m_workcell->objects, poses);
+  for (std::size_t i = 0; i < model.links().size(); ++i) m_link_poses[model.links()[i].name] = X_WL[i];
+  placeBodies();
   refreshGhost();
   return true;
 }
@@ -86,13 +85,25 @@ void SceneContents::setSketch(const session::Document& document) {
   m_sketch.update(items);
 }
 
-void SceneContents::setWorld(const session::Document& document) {
-  std::vector<planning::WorldObject> bodies;
+void SceneContents::setWorld(const session::Document& document, const std::optional<session::HeldBody>& held) {
+  m_bodies.clear();
   for (const auto& item : document.world()) {
-    if (item.hidden) continue;
-    for (auto& body : session::bodiesOf(item, false)) bodies.push_back(std::move(body));
+    if (item.hidden || (held && held->item == item.id)) continue;
+    for (auto& body : session::bodiesOf(item, false)) m_bodies.push_back(std::move(body));
   }
-  m_sketched_world.update(bodies);
+  if (held) m_bodies.push_back(held->body);
+  m_held = held ? held->body.name : std::string();
+  placeBodies();
+}
+
+void SceneContents::placeBodies() {
+  m_sketched_world.update(m_bodies, m_link_poses);
+  if (!m_world) return;
+  std::vector<planning::WorldObject> fixed;
+  for (const auto& object : m_workcell->objects) {
+    if (m_held.empty() || object.name != m_held) fixed.push_back(object);
+  }
+  m_world->update(fixed, m_link_poses);
 }
 
 void SceneContents::setPlan(const session::Document& document) {

@@ -4,11 +4,15 @@
 /// SceneContents: what stands in the 3-D scene, kept in step with document and robot.
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
+#include "session/controllers/held_controller.h"
 #include "session/document/document.h"
 #include "widgets/scene/frustum_rep.h"
 #include "widgets/scene/ground_grid_rep.h"
@@ -33,8 +37,8 @@ class SceneContents final {
   /// @returns whether the robot looks any different.
   bool setJoints(const JointState* joints);
   void setSketch(const session::Document& document);
-  /// Bodies that were added to the world, and only those that are shown.
-  void setWorld(const session::Document& document);
+  /// Bodies that were added to the world, and only those that are shown; what is held is drawn at the tool.
+  void setWorld(const session::Document& document, const std::optional<session::HeldBody>& held);
   void setPlan(const session::Document& document);
   /// Shows the ghost there, unless the robot itself stands there.
   void setCursor(double t_s);
@@ -48,6 +52,7 @@ class SceneContents final {
 
  private:
   void refreshGhost();
+  void placeBodies();
 
   vtkRenderer* m_renderer;
   std::shared_ptr<const planning::Workcell> m_workcell;
@@ -58,6 +63,9 @@ class SceneContents final {
   scene::AxesRep m_axes;
   scene::SketchRep m_sketch;
   scene::WorldRep m_sketched_world;
+  std::vector<planning::WorldObject> m_bodies;   // What that shows.
+  std::string m_held;                      // Name of the body that is held; it is drawn once.
+  std::map<std::string, Pose> m_link_poses;
   std::array<scene::FrustumRep, 2> m_frustums;
   double m_opacity = 0.8;
   bool m_ghost = false;

@@ -92,10 +92,8 @@ void ScenePanel::bind(Actions& actions) {
   });
   connect(m_view, &widgets::SceneView::picked, this, [this](quint64 id) { m_bench.targeting().select(FeatureId{id}); });
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &ScenePanel::onSketch);
-  connect(&m_bench.targeting(), &session::TargetingController::worldChanged, this, [this] {
-    m_contents->setWorld(m_bench.document());
-    m_view->requestRender();
-  });
+  connect(&m_bench.targeting(), &session::TargetingController::worldChanged, this, &ScenePanel::onWorld);
+  connect(&m_bench.held(), &session::HeldController::changed, this, &ScenePanel::onWorld);
   connect(&m_bench.targeting(), &session::TargetingController::planChanged, this, &ScenePanel::onPlan);
   connect(&m_bench.play(), &session::PlayController::changed, this, [this] {
     m_contents->setCursor(m_bench.play().state().cursor_s);
@@ -123,6 +121,11 @@ void ScenePanel::onJoints() {
     m_framed = true;
     showAll(CameraPreset::kIso);
   }
+  m_view->requestRender();
+}
+
+void ScenePanel::onWorld() {
+  m_contents->setWorld(m_bench.document(), m_bench.held().held());
   m_view->requestRender();
 }
 

@@ -35,6 +35,7 @@ class ScenePanel final : public QFrame {
   void bind(Actions& actions);
   void onWorkcell();
   void onJoints();
+  void onWorld();
   void onSketch();
   void onPlan();
   void showPanes();

@@ -22,17 +22,20 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
   connect(actions.at(ActionId::kNumbers), &QAction::triggered, this, &SketchEdits::showNumbers);
   connect(actions.at(ActionId::kColour), &QAction::triggered, this, &SketchEdits::askColour);
   connect(actions.at(ActionId::kExportWorld), &QAction::triggered, this, &SketchEdits::browseExport);
-  connect(actions.at(ActionId::kAddToWorld), &QAction::triggered, this, [this] {
-    const Status added = m_bench.world().addSelected();
-    if (!added) m_bench.say(QString::fromStdString(added.error().message));
-  });
+  const auto tell = [this](const Status& done) {
+    if (!done) m_bench.say(QString::fromStdString(done.error().message));
+  };
+  connect(actions.at(ActionId::kAddToWorld), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addSelected()); });
+  connect(actions.at(ActionId::kAddKeepOut), &QAction::triggered, this,
+          [this, tell] { tell(m_bench.world().addSelected(session::WorldRole::kKeepOut)); });
+  connect(actions.at(ActionId::kAddWorkspace), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addWorkspace()); });
   connect(&bench.targeting(), &TargetingController::featuresChanged, this, &SketchEdits::refresh);
   connect(&bench.targeting(), &TargetingController::worldChanged, this, &SketchEdits::refresh);
   refresh();
 }
 
 void SketchEdits::refresh() {
-  m_actions.setWhyNot(ActionId::kAddToWorld, m_bench.world().whyNotAdd());
+  for (const auto id : {ActionId::kAddToWorld, ActionId::kAddKeepOut}) m_actions.setWhyNot(id, m_bench.world().whyNotAdd());
   m_actions.setWhyNot(ActionId::kExportWorld, m_bench.world().items().empty() ? tr("Nothing was added to the world yet.") : QString());
 }
 
@@ -119,7 +122,7 @@ void SketchEdits::showMenu(const SnapshotPane& pane, const QPoint& global_positi
   if (there.valid()) {
     add({ActionId::kRename, ActionId::kNote, ActionId::kNumbers, ActionId::kColour});
     add({ActionId::kDuplicate, ActionId::kGroup, ActionId::kUngroup, ActionId::kHide, ActionId::kLock});
-    add({ActionId::kAddToWorld, ActionId::kDelete});
+    add({ActionId::kAddToWorld, ActionId::kAddKeepOut, ActionId::kDelete});
   } else {
     add({ActionId::kToolPoint, ActionId::kToolLine, ActionId::kToolPipe, ActionId::kToolPlane, ActionId::kToolTriad, ActionId::kToolMeasure});
     add({ActionId::kSelectAll, ActionId::kFitPictures, ActionId::kFullSize, ActionId::kUndistort});

@@ -22,7 +22,7 @@ QString libraryFolder(const QString& autosave_folder) {
 Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
       m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs),
-      m_world(m_document, m_history), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
+      m_world(m_document, m_history), m_held(m_document, m_world), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
       m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
       m_lens(m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
@@ -30,6 +30,7 @@ Workbench::Workbench(const QString& autosave_folder, QObject* parent)
   session::SnapshotTiming timing;
   timing.timeout_s = 10;
   m_snapshots.setTiming(timing);
+  m_plans.setHeld(&m_held);
   connectParts();
 }
 
@@ -48,7 +49,12 @@ void Workbench::connectParts() {
   });
   connect(&m_world, &session::WorldController::changed, this, &Workbench::tellObstacles);
   connect(&m_robot, &RobotSession::linkChanged, this, &Workbench::tellObstacles);   // a robot started anew knows none
-  connect(&m_robot, &RobotSession::polled, this, [this] { m_play.refresh(m_robot.status()); });
+  connect(&m_robot, &RobotSession::polled, this, [this] {
+    m_play.refresh(m_robot.status());
+    lookAtGripper();
+  });
+  connect(&m_held, &session::HeldController::changed, this, &Workbench::tellObstacles);
+  connect(&m_held, &session::HeldController::said, this, &Workbench::said);
   connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::stateChanged, this, &Workbench::favourPair);
@@ -64,14 +70,20 @@ void Workbench::connectParts() {
   connectCalibration();
 }
 
-// What a jog keeps clear of: the workcell's bodies and those that were sketched.
+void Workbench::lookAtGripper() {
+  if (!m_robot.runtime() || !m_robot.linkUp()) return;
+  const auto q = m_robot.runtime()->configuration();
+  if (q) m_held.refresh(m_robot.runtime()->holding(), *q);
+}
+
+// What a jog keeps clear of: the workcell's bodies and those that were sketched; what is held moves along.
 void Workbench::tellObstacles() {
   const auto& workcell = m_document.workcell();
   if (!m_robot.runtime() || !m_robot.linkUp() || !workcell) return;
-  std::vector<planning::WorldObject> objects = workcell->objects;
-  const auto& model = *workcell->model;
-  for (auto& body : session::obstaclesOf(m_document.world(), model.links()[static_cast<std::size_t>(model.rootLink())].name, {})) {
-    objects.push_back(std::move(body));
+  std::vector<planning::WorldObject> objects = m_held.obstacles({});
+  if (m_held.held()) objects.push_back(m_held.held()->body);
+  for (const auto& object : workcell->objects) {
+    if (!m_held.held() || m_held.held()->body.name != object.name) objects.push_back(object);
   }
   m_robot.runtime()->setObstacles(objects);
 }

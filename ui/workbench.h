@@ -17,6 +17,7 @@
 #include "session/calibration/zoom_controller.h"
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
+#include "session/controllers/held_controller.h"
 #include "session/controllers/jog_controller.h"
 #include "session/controllers/match_controller.h"
 #include "session/controllers/plan_controller.h"
@@ -53,6 +54,7 @@ class Workbench final : public QObject {
   LivePictures& live() { return m_live; }
   session::TargetingController& targeting() { return m_targeting; }
   session::WorldController& world() { return m_world; }
+  session::HeldController& held() { return m_held; }
   session::MatchController& matches() { return m_matches; }
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
@@ -98,6 +100,7 @@ class Workbench final : public QObject {
  private:
   void connectParts();
   void tellObstacles();
+  void lookAtGripper();
   void chooseCameras();
   void favourPair();
   void connectCalibration();
@@ -113,6 +116,7 @@ class Workbench final : public QObject {
   session::TargetingController m_targeting;
   session::MatchController m_matches;
   session::WorldController m_world;
+  session::HeldController m_held;
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;

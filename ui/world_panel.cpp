@@ -1,5 +1,8 @@
 #include "ui/world_panel.h"
 
+#include <algorithm>
+
+#include <QComboBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QPushButton>
@@ -13,6 +16,7 @@ namespace longarm::ui {
 
 using session::WorldItem;
 using session::WorldKind;
+using session::WorldRole;
 
 WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_table(new QTableWidget(this)), m_remove(new QPushButton(tr("Remove"), this)) {
@@ -21,7 +25,7 @@ WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
   buildTable();
   column->addWidget(m_table, 1);
   auto* row = new QHBoxLayout;
-  for (const auto id : {ActionId::kAddToWorld, ActionId::kExportWorld}) {
+  for (const auto id : {ActionId::kAddToWorld, ActionId::kAddKeepOut, ActionId::kAddWorkspace, ActionId::kExportWorld}) {
     auto* button = new QToolButton(this);
     button->setDefaultAction(actions.at(id));
     button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
@@ -42,14 +46,14 @@ WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
 void WorldPanel::buildTable() {
   m_table->setColumnCount(kColumns);
   m_table->setHorizontalHeaderLabels({tr("Body"), tr("Kind"), tr("x mm"), tr("y mm"), tr("z mm"), tr("Margin mm"), tr("at x"), tr("at y"), tr("at z"),
-                                      tr("Shown"), tr("Obstacle")});
+                                      tr("Shown"), tr("Robot")});
   const char* tips[] = {QT_TR_NOOP("Name; double-click to change it"), QT_TR_NOOP("What it came from"),
                         QT_TR_NOOP("Edge of a box; diameter of a pipe or of points"), QT_TR_NOOP("Edge of a box"),
                         QT_TR_NOOP("Edge of a box, thickness of a slab, length of a pipe"),
                         QT_TR_NOOP("Plans keep this much more away: what the measurement does not know"), QT_TR_NOOP("Its middle in the robot's frame, mm"),
                         QT_TR_NOOP("Its middle in the robot's frame, mm"), QT_TR_NOOP("Its middle in the robot's frame, mm"),
                         QT_TR_NOOP("Drawn in pictures and scene"),
-                        QT_TR_NOOP("Plans keep clear of it")};
+                        QT_TR_NOOP("What it is to the robot: kept clear of, planned through, never entered, or never left")};
   for (int i = 0; i < kColumns; ++i) m_table->horizontalHeaderItem(i)->setToolTip(tr(tips[i]));
   m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
   m_table->setEditTriggers(QAbstractItemView::DoubleClicked);
@@ -80,9 +84,8 @@ void WorldPanel::fillRow(int row, const WorldItem& item) {
   for (int column = 0; column < kColumns; ++column) {
     auto* cell = new QTableWidgetItem(texts[column]);
     Qt::ItemFlags flags = Qt::ItemIsSelectable | Qt::ItemIsEnabled;
-    if (column == kShown || column == kObstacle) {
-      const bool on = column == kShown ? !item.hidden : item.obstacle;
-      cell->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+    if (column == kShown) {
+      cell->setCheckState(item.hidden ? Qt::Unchecked : Qt::Checked);
       flags |= Qt::ItemIsUserCheckable;
     } else if (column != kKind && !texts[column].isEmpty()) {
       flags |= Qt::ItemIsEditable;
@@ -91,6 +94,34 @@ void WorldPanel::fillRow(int row, const WorldItem& item) {
     if (column > kKind) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
     m_table->setItem(row, column, cell);
   }
+  addRoleBox(row, item);
+}
+
+void WorldPanel::addRoleBox(int row, const WorldItem& item) {
+  auto* box = new QComboBox(m_table);
+  box->addItem(tr("obstacle"), static_cast<int>(WorldRole::kObstacle));
+  box->addItem(tr("drawn only"), static_cast<int>(WorldRole::kDrawn));
+  box->addItem(tr("keep-out"), static_cast<int>(WorldRole::kKeepOut));
+  if (item.kind == WorldKind::kBox) box->addItem(tr("workspace"), static_cast<int>(WorldRole::kWorkspace));
+  box->setCurrentIndex(box->findData(static_cast<int>(item.role)));
+  box->setFocusPolicy(Qt::TabFocus);
+  box->setFrame(false);
+  // Queued: the list is filled anew by what follows, and this box goes with it.
+  connect(box, QOverload<int>::of(&QComboBox::activated), this, [this, box, id = item.id] {
+    const auto& items = m_bench.world().items();
+    const auto found = std::find_if(items.begin(), items.end(), [&](const WorldItem& other) { return other.id == id; });
+    if (found == items.end()) return;
+    WorldItem after = *found;
+    after.role = static_cast<WorldRole>(box->currentData().toInt());
+    apply(after);
+  }, Qt::QueuedConnection);
+  m_table->setCellWidget(row, kRole, box);
+}
+
+void WorldPanel::apply(const WorldItem& after) {
+  const Status done = m_bench.world().edit(after);
+  if (!done) m_bench.say(QString::fromStdString(done.error().message));
+  refresh();
 }
 
 void WorldPanel::edited(int row, int column) {
@@ -102,7 +133,7 @@ void WorldPanel::edited(int row, int column) {
   switch (column) {
     case kName: after.name = cell.text().trimmed().left(100).toStdString(); break;
     case kShown: after.hidden = cell.checkState() != Qt::Checked; break;
-    case kObstacle: after.obstacle = cell.checkState() == Qt::Checked; break;
+    case kRole: return;                  // its own box tells
     default:
       if (!number) done = {ErrorCode::kInvalidInput, "That is no number. The decimal point is a dot."};
       else if (column == kMargin) after.margin_m = *number / 1000;
@@ -113,8 +144,8 @@ void WorldPanel::edited(int row, int column) {
   if (column == kSizeX && after.kind == WorldKind::kPipe) after.size.y() = after.size.x();
   if (column == kSizeX && after.kind == WorldKind::kPoints) after.size.setConstant(after.size.x());
   if (column == kName && after.name.empty()) done = {ErrorCode::kInvalidInput, "A body needs a name."};
-  if (done) done = m_bench.world().edit(after);
-  if (!done) m_bench.say(QString::fromStdString(done.error().message));
+  if (done) return apply(after);
+  m_bench.say(QString::fromStdString(done.error().message));
   refresh();
 }
 

@@ -18,7 +18,7 @@ class WorldPanel final : public QWidget {
   Q_OBJECT
 
  public:
-  enum Column { kName, kKind, kSizeX, kSizeY, kSizeZ, kMargin, kAtX, kAtY, kAtZ, kShown, kObstacle, kColumns };
+  enum Column { kName, kKind, kSizeX, kSizeY, kSizeZ, kMargin, kAtX, kAtY, kAtZ, kShown, kRole, kColumns };
 
   WorldPanel(Workbench& bench, Actions& actions, QWidget* parent = nullptr);
   QTableWidget* table() const { return m_table; }
@@ -29,6 +29,8 @@ class WorldPanel final : public QWidget {
   void refresh();
   void fillRow(int row, const session::WorldItem& item);
   void edited(int row, int column);
+  void addRoleBox(int row, const session::WorldItem& item);
+  void apply(const session::WorldItem& after);
   void refreshButtons();
   void removeSelected();
   std::vector<WorldItemId> selected() const;

@@ -25,7 +25,7 @@ std::pair<std::string, std::string> sorted(const planning::Contact& contact) {
 ContactWatch::ContactWatch(const planning::Workcell& workcell, std::set<std::string> touch_goals)
     : m_workcell(workcell),
       m_touch_goals(std::move(touch_goals)),
-      m_link_pairs(planning::allowedPairs(workcell.model)) {
+      m_link_pairs(planning::allowedPairs(workcell)) {
   const int links = static_cast<int>(workcell.model->links().size());
   for (int a = 0; a < links; ++a) {
     for (int b = a + 1; b < links; ++b) m_all_link_pairs.insert({a, b});

@@ -94,4 +94,18 @@ AllowedPairs allowedPairs(const std::shared_ptr<const RobotModel>& model, unsign
   return out;
 }
 
+AllowedPairs allowedPairs(const Workcell& workcell) {
+  AllowedPairs pairs = allowedPairs(workcell.model);
+  std::vector<int> links;
+  for (const auto& name : workcell.gripper ? workcell.gripper->links : std::vector<std::string>{}) {
+    if (const auto link = workcell.model->linkIndex(name)) links.push_back(*link);
+  }
+  for (const int a : links) {
+    for (const int b : links) {
+      if (a < b) pairs.insert({a, b});
+    }
+  }
+  return pairs;
+}
+
 }  // namespace longarm::planning

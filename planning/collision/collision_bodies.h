@@ -19,6 +19,7 @@ struct Body {
   std::string name;                      ///< Of the link or object.
   int link = -1;                         ///< -1: fixed in the root frame.
   bool object = false;
+  BodyRole role = BodyRole::kSolid;
   Pose X_LS = Pose::Identity();
   FclGeometry geometry;
   ShapeBounds bounds;
@@ -30,6 +31,7 @@ struct Pair {
   bool self = false;                     ///< Neither is a fixed object.
   bool allowed = false;
   bool moving = false;
+  bool zone = false;                     ///< One of them is no thing.
   MotionBound bound;
 };
 
@@ -57,6 +59,7 @@ struct CollisionWorld::Impl {
 
   void addLinkBodies();
   void addObjects(const std::vector<WorldObject>& objects);
+  void addObject(const WorldObject& object);
   void addPairs(const AllowedPairs& allowed);
   bool carriedBy(const internal::Body& object, int link) const;
 
@@ -64,6 +67,7 @@ struct CollisionWorld::Impl {
   double bound(const internal::Pair& pair, const internal::PlacedState& state) const;
   /// Distance by FCL; at most `cap`.
   double distance(const internal::Pair& pair, const internal::PlacedState& state, double cap) const;
+  bool anyTouches(const Eigen::VectorXd& q, bool zones_only, Contact* contact) const;
   double leastDistance(const internal::PlacedState& state, bool self, bool world, double cap, Contact* nearest) const;
   void report(const internal::Pair& pair, double d, Contact* contact) const;
   bool segmentFree(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Contact* contact) const;

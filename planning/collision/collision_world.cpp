@@ -6,6 +6,7 @@
 #include "core/require.h"
 #include "core/text.h"
 #include "planning/collision/collision_bodies.h"
+#include "planning/world/zone.h"
 
 namespace longarm::planning {
 
@@ -14,7 +15,8 @@ using internal::Pair;
 using internal::PlacedState;
 
 std::string Contact::sentence() const {
-  if (distance <= 0) return first + " touches " + second;
+  if (distance <= 0) return first + " " + meetingWords(role, second);
+  if (role == BodyRole::kKeepIn) return first + " is " + formatFixed(distance * 1000, 1) + " mm from the edge of the workspace " + second;
   return first + " is " + formatFixed(distance * 1000, 1) + " mm from " + second;
 }
 
@@ -36,16 +38,21 @@ void CollisionWorld::Impl::addLinkBodies() {
 void CollisionWorld::Impl::addObjects(const std::vector<WorldObject>& objects) {
   for (const auto& object : objects) {
     if (!object.collides) continue;
-    Body body;
-    body.name = object.name;
-    body.object = true;
-    body.X_LS = object.X_WO;
-    body.geometry = internal::toFcl(object.shape);
-    body.bounds = boundsOf(object.shape);
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&object.shape)) body.mesh = *mesh;
-    if (!object.attached_link.empty()) body.link = model->linkIndex(object.attached_link).valueOr(-1);
-    if (body.geometry) bodies.push_back(std::move(body));
+    for (const auto& barrier : barriersOf(object)) addObject(barrier);
   }
+}
+
+void CollisionWorld::Impl::addObject(const WorldObject& object) {
+  Body body;
+  body.name = object.name;
+  body.object = true;
+  body.role = object.role;
+  body.X_LS = object.X_WO;
+  body.geometry = internal::toFcl(object.shape);
+  body.bounds = boundsOf(object.shape);
+  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&object.shape)) body.mesh = *mesh;
+  if (!object.attached_link.empty()) body.link = model->linkIndex(object.attached_link).valueOr(-1);
+  if (body.geometry) bodies.push_back(std::move(body));
 }
 
 // Whether an attached object may touch this link: the carrier, its parent and its children.
@@ -86,6 +93,7 @@ void CollisionWorld::Impl::addPairs(const AllowedPairs& allowed) {
         pair.bound.insert(pair.bound.end(), other.begin(), other.end());
       }
       pair.moving = moves(pair.bound);
+      pair.zone = a.role != BodyRole::kSolid || b.role != BodyRole::kSolid;
       pairs.push_back(std::move(pair));
     }
   }
@@ -143,8 +151,10 @@ double CollisionWorld::Impl::leastDistance(const PlacedState& state, bool self, 
 
 void CollisionWorld::Impl::report(const Pair& pair, double d, Contact* contact) const {
   if (contact == nullptr) return;
-  *contact = {bodies[static_cast<std::size_t>(pair.a)].name, bodies[static_cast<std::size_t>(pair.b)].name,
-              std::max(d, 0.0)};
+  const Body* first = &bodies[static_cast<std::size_t>(pair.a)];
+  const Body* second = &bodies[static_cast<std::size_t>(pair.b)];
+  if (first->role != BodyRole::kSolid) std::swap(first, second);
+  *contact = {first->name, second->name, std::max(d, 0.0), second->role};
 }
 
 CollisionWorld::CollisionWorld(std::shared_ptr<const RobotModel> model, const std::vector<WorldObject>& objects,
@@ -177,7 +187,7 @@ void CollisionWorld::allow(const std::string& object, const std::vector<std::str
   for (auto& pair : m_impl->pairs) {
     const Body& a = m_impl->bodies[static_cast<std::size_t>(pair.a)];
     const Body& b = m_impl->bodies[static_cast<std::size_t>(pair.b)];
-    if (matches(a, b) || matches(b, a)) pair.allowed = true;
+    if (!pair.zone && (matches(a, b) || matches(b, a))) pair.allowed = true;
   }
 }
 
@@ -195,16 +205,19 @@ bool CollisionWorld::inCollision(const Eigen::VectorXd& q, Contact* contact) con
   return false;
 }
 
-bool CollisionWorld::touching(const Eigen::VectorXd& q, Contact* contact) const {
-  m_impl->placeAll(q, m_impl->scratch);
-  for (const auto& pair : m_impl->pairs) {
-    if (pair.allowed || m_impl->bound(pair, m_impl->scratch) > 0) continue;
-    if (m_impl->distance(pair, m_impl->scratch, 1e-3) > 0) continue;
-    m_impl->report(pair, 0, contact);
+bool CollisionWorld::Impl::anyTouches(const Eigen::VectorXd& q, bool zones_only, Contact* contact) const {
+  placeAll(q, scratch);
+  for (const auto& pair : pairs) {
+    if (pair.zone ? !pair.moving : (pair.allowed || zones_only)) continue;
+    if (bound(pair, scratch) > 0 || distance(pair, scratch, 1e-3) > 0) continue;
+    report(pair, 0, contact);
     return true;
   }
   return false;
 }
+
+bool CollisionWorld::touching(const Eigen::VectorXd& q, Contact* contact) const { return m_impl->anyTouches(q, false, contact); }
+bool CollisionWorld::inZone(const Eigen::VectorXd& q, Contact* contact) const { return m_impl->anyTouches(q, true, contact); }
 
 double CollisionWorld::clearance(const Eigen::VectorXd& q, Contact* nearest, double cap) const {
   m_impl->placeAll(q, m_impl->scratch);

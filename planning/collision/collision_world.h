@@ -24,8 +24,9 @@ using AllowedPairs = std::set<std::pair<int, int>>;
 struct Contact {
   std::string first, second;
   double distance = 0;                   ///< [m]; 0 when they touch.
+  BodyRole role = BodyRole::kSolid;      ///< Of the second; a zone always comes second.
 
-  /// "link_a touches link_b", or "link_a is 3.1 mm from link_b".
+  /// "link_a touches link_b", "link_a is 3.1 mm from link_b", "link_a is inside the keep-out zone b".
   std::string sentence() const;
 };
 
@@ -47,6 +48,7 @@ class CollisionWorld {
  public:
   /// @param objects  Bodies; those with `collides == false` are skipped, those with an unknown `attached_link` are
   ///                 taken as fixed.  An attached body may touch the link that carries it and that link's neighbours.
+  ///                 Zones concern only links that `options.moving` moves, and what hangs on them.
   CollisionWorld(std::shared_ptr<const RobotModel> model, const std::vector<WorldObject>& objects,
                  const AllowedPairs& allowed, const CollisionOptions& options = {});
   ~CollisionWorld();
@@ -54,7 +56,7 @@ class CollisionWorld {
   CollisionWorld& operator=(const CollisionWorld&) = delete;
 
   const RobotModel& model() const;
-  /// Lets these links and objects touch the object of that name.
+  /// Lets these links and objects touch the object of that name; nothing is let into a zone.
   void allow(const std::string& object, const std::vector<std::string>& others);
   /// Changes the paddings, e.g. when a motion must start closer than the usual.
   void setPadding(double padding, double self_padding);
@@ -63,8 +65,10 @@ class CollisionWorld {
 
   /// Whether a moving pair is closer than its padding at q (full configuration).
   bool inCollision(const Eigen::VectorXd& q, Contact* contact = nullptr) const;
-  /// Whether any pair, moving or not, touches at q; paddings do not count.
+  /// Whether any pair, moving or not (zones: moving), touches at q; paddings do not count.
   bool touching(const Eigen::VectorXd& q, Contact* contact = nullptr) const;
+  /// Whether the arm, or what it carries, is where a zone does not let it be; paddings do not count.
+  bool inZone(const Eigen::VectorXd& q, Contact* contact = nullptr) const;
   /// Least distance of all moving pairs, at most `cap` [m]; 0 when touching.
   double clearance(const Eigen::VectorXd& q, Contact* nearest = nullptr, double cap = 1.0) const;
   /// Least distance over the robot-world pairs and over the link-link pairs separately, at most `cap`.
@@ -95,6 +99,9 @@ class CollisionWorld {
 /// `samples` random configurations (seeded) and so cannot be kept apart.  Pairs that never touched in the samples
 /// stay checked: a few microseconds cost less than a pair that the samples happened to miss.
 AllowedPairs allowedPairs(const std::shared_ptr<const RobotModel>& model, unsigned seed = 1, int samples = 300);
+
+/// The same for a workcell's robot; the gripper's links may also touch one another, as fingers that are shut do.
+AllowedPairs allowedPairs(const Workcell& workcell);
 
 /// Indices in q of the group's joints.
 std::vector<int> movingIndices(const RobotModel& model, const JointGroup& group);

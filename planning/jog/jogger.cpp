@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "planning/macros/grip.h"
 
 namespace longarm::planning {
 
@@ -34,7 +35,7 @@ struct Jogger::Base {
 };
 
 Jogger::Jogger(std::shared_ptr<const Workcell> workcell, JogOptions options)
-    : m_workcell(std::move(workcell)), m_options(options), m_allowed(allowedPairs(m_workcell->model)) {
+    : m_workcell(std::move(workcell)), m_options(options), m_allowed(allowedPairs(*m_workcell)) {
   setObjects(m_workcell->objects);
 }
 
@@ -42,6 +43,7 @@ Jogger::~Jogger() = default;
 
 void Jogger::setObjects(const std::vector<WorldObject>& objects) {
   m_world = std::make_unique<CollisionWorld>(m_workcell->model, objects, m_allowed, optionsFor(*m_workcell));
+  allowGrip(*m_world, *m_workcell, objects, {});   // what is carried lies between the fingers
 }
 
 Status Jogger::command(const JogCommand& command, double now_s) {
@@ -122,17 +124,22 @@ bool Jogger::goesOn(const Base& base, const std::vector<TrajectoryPoint>& points
   const double before = m_world->clearance(from, nullptr, kSeen_m);
   Contact contact;
   const bool was_free = !m_world->inCollision(from);
+  const bool was_in_zone = m_world->inZone(from);
   const int every = 4;
   for (std::size_t i = base.points.size() + every - 1;; i += every) {
     const Eigen::VectorXd to = withArm(*m_workcell, q, points[std::min(i, points.size() - 1)].positions);
     if (was_free && !m_world->segmentFree(from, to, &contact)) {
       m_report.reason = "stopped: " + contact.sentence();
-      return through;
+      if (!through || contact.role != BodyRole::kSolid) return false;
+    }
+    if (!was_free && !was_in_zone && m_world->inZone(to, &contact)) {
+      m_report.reason = "stopped: " + contact.sentence();
+      return false;
     }
     from = to;
     if (i + 1 >= points.size()) break;
   }
-  if (was_free || through) return true;
+  if (was_free || (through && !was_in_zone)) return true;
   if (m_world->clearance(from, nullptr, kSeen_m) > before + kAway_m) return true;
   m_report.reason = "too close to something: only away from it, or creep through";
   return false;

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "planning/macros/planning_run.h"
+#include "planning/macros/tool_shape.h"
 #include "planning/motion/straight_leg.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
@@ -98,9 +99,7 @@ class Corrector {
   Result<CorrectedPlan> correct() {
     m_run.keepContact();
     const auto world = m_run.makeWorld(m_plan.obstacles, m_run.configuration());
-    if (m_run.workcell().gripper) {
-      for (const auto& name : m_plan.touchable) world->allow(name, m_run.workcell().gripper->links);
-    }
+    for (const auto& name : m_plan.touchable) world->allow(name, toolLinks(m_run.workcell()));
     const ArmSpace space(m_run.workcell(), *world, m_run.configuration());
     const Eigen::VectorXd here = m_plan.trajectory.sample(m_tau).positions;
     const StraightLeg leg = followLine(space, here, nudged(space.tip(here), m_nudge));

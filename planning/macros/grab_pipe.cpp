@@ -33,6 +33,8 @@ class GrabRun {
     m_q = withGripperOpen(m_run);
     const WorldObject obstacle = pipeObstacle();
     m_run.plan().obstacles = {obstacle};
+    m_run.plan().grasped = obstacle;
+    m_run.plan().grasped->shape = Cylinder{m_options.radius, m_pipe.length};
     m_run.plan().touchable = targetNames(obstacle.name);
     const auto transit_world = m_run.makeWorld({obstacle}, m_q);
     const auto approach_world = m_run.makeWorld({obstacle}, m_q);

@@ -44,6 +44,7 @@ class GraspByFaces final : public FeatureMacro {
                                            formatFixed(1e3 * widest, 1) + " mm"};
     }
     setup.job.obstacles.push_back(box->object(setup.feature.name));
+    setup.job.grasped = setup.job.obstacles.back();
     setup.job.touchable = objectsThrough(setup.run.context(), box->X_RO.translation());
     setup.job.touchable.push_back(setup.feature.name);
     setup.job.open_gripper = true;

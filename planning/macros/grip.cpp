@@ -118,17 +118,21 @@ bool heldBy(const std::vector<HandShape>& shapes, const std::vector<int>& links,
 
 }  // namespace
 
-Grip gripAt(const Workcell& workcell, const std::vector<WorldObject>& objects, const Eigen::VectorXd& q) {
+Grip gripAt(const Workcell& workcell, const std::vector<WorldObject>& objects, const Eigen::VectorXd& q,
+            const std::vector<std::string>& known) {
   Grip grip;
   if (!workcell.gripper) return grip;
   const std::vector<HandShape> shapes = gripperShapes(workcell, q);
   const int index = fingerIndex(workcell);
   const bool half_open = index >= 0 && halfOpen(workcell, q[index]);
   const std::vector<int> links = half_open ? fingers(workcell, q, index) : std::vector<int>{};
-  const auto stays = [](const WorldObject& object) { return object.collides && object.attached_link.empty(); };
+  const auto stays = [](const WorldObject& object) { return object.standsInTheWay(); };
+  const auto is_known = [&](const WorldObject& object) {
+    return half_open && std::find(known.begin(), known.end(), object.name) != known.end();
+  };
   for (const auto& object : objects) {
     if (!stays(object)) continue;
-    if (heldBy(shapes, links, tipPose(workcell, q), object)) grip.held.push_back(object.name);
+    if (is_known(object) || heldBy(shapes, links, tipPose(workcell, q), object)) grip.held.push_back(object.name);
     else if (linkDistance(shapes, -1, object) <= 0) grip.touched.push_back(object.name);
   }
   const auto held = [&](const WorldObject& object) { return std::find(grip.held.begin(), grip.held.end(), object.name) != grip.held.end(); };

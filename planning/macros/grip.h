@@ -22,8 +22,11 @@ struct Grip {
 };
 
 /// Looks at the bodies that are attached to nothing.  Empty without a gripper.
-/// @param q  Full configuration.
-Grip gripAt(const Workcell& workcell, const std::vector<WorldObject>& objects, const Eigen::VectorXd& q);
+/// @param q      Full configuration.
+/// @param known  Bodies that are held however their measured place fits the fingers, because the robot says that it holds
+///               something; only while the fingers stand neither open nor shut.
+Grip gripAt(const Workcell& workcell, const std::vector<WorldObject>& objects, const Eigen::VectorXd& q,
+            const std::vector<std::string>& known = {});
 
 /// The bodies, those that are held attached to the arm's tip as they stand at q.
 std::vector<WorldObject> withHeldAttached(const Workcell& workcell, std::vector<WorldObject> objects, const Grip& grip,

@@ -96,14 +96,22 @@ bool PlanningRun::begin() {
   m_start = groupPositions(model(), workcell().arm, m_context.start);
   if (!checkLimits()) return false;
   m_configuration = m_context.start;
-  m_allowed = allowedPairs(workcell().model);
-  m_objects = workcell().objects;
-  m_objects.insert(m_objects.end(), m_context.objects.begin(), m_context.objects.end());
-  m_grip = gripAt(workcell(), m_objects, m_configuration);
+  m_allowed = allowedPairs(workcell());
+  m_objects = m_context.objects;
+  for (const auto& object : workcell().objects) {
+    const auto same = [&](const WorldObject& other) { return other.name == object.name; };
+    if (std::none_of(m_context.objects.begin(), m_context.objects.end(), same)) m_objects.push_back(object);
+  }
+  m_grip = gripAt(workcell(), m_objects, m_configuration, m_context.held);
+  CollisionOptions options;
+  options.moving = movingIndices(model(), workcell().arm);
   Contact contact;
-  if (bareWorld({}, m_configuration, {}, true)->touching(m_configuration, &contact)) {
+  if (bareWorld({}, m_configuration, options, true)->touching(m_configuration, &contact)) {
+    const bool zone = contact.role != BodyRole::kSolid;
     fail(PlanStatus::kStartInCollision,
-         "The robot already stands in collision: " + contact.sentence() + ". Jog it clear, or correct the scene.", 0);
+         (zone ? "The arm stands where it must not be: " : "The robot already stands in collision: ") + contact.sentence() +
+             (zone ? ". Jog it back, or change the zone." : ". Jog it clear, or correct the scene."),
+         0);
     return false;
   }
   if (!m_grip.held.empty()) m_plan.notes.push_back("The gripper holds " + quoted(m_grip.held) + ": planned to move with the tool.");
@@ -154,7 +162,7 @@ bool PlanningRun::backOff(const Eigen::Vector3d& way) {
 
 std::unique_ptr<CollisionWorld> PlanningRun::bareWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q,
                                                        const CollisionOptions& options, bool may_touch) const {
-  const Grip grip = gripAt(workcell(), m_objects, q);
+  const Grip grip = gripAt(workcell(), m_objects, q, m_context.held);
   std::vector<WorldObject> objects = withHeldAttached(workcell(), m_objects, grip, q);
   objects.insert(objects.end(), extra.begin(), extra.end());
   auto world = std::make_unique<CollisionWorld>(workcell().model, objects, m_allowed, options);

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "planning/macros/task_advice.h"
+#include "planning/macros/tool_shape.h"
 #include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
@@ -53,9 +54,7 @@ TaskWorlds makeTaskWorlds(PlanningRun& run, const ToolJob& job, const Eigen::Vec
   TaskWorlds worlds{run.makeWorld(job.obstacles, q), run.makeWorld(job.obstacles, q)};
   auto& notes = run.plan().notes;        // both look at the same start and say the same
   notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
-  if (run.workcell().gripper) {
-    for (const auto& name : job.touchable) worlds.touching->allow(name, run.workcell().gripper->links);
-  }
+  for (const auto& name : job.touchable) worlds.touching->allow(name, toolLinks(run.workcell()));
   worlds.touching->setPadding(std::min(job.touch_padding, worlds.touching->padding()), worlds.touching->selfPadding());
   return worlds;
 }
@@ -65,6 +64,7 @@ Plan TaskPlanner::plan() {
   const TaskWorlds worlds = makeTaskWorlds(m_run, m_job, m_q);
   m_run.plan().obstacles = m_job.obstacles;
   m_run.plan().touchable = m_job.touchable;
+  m_run.plan().grasped = m_job.grasped;
   Contact contact;
   if (worlds.free->touching(m_q, &contact)) {
     return m_run.fail(PlanStatus::kStartInCollision,

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct ToolJob {
   std::vector<WorldObject> obstacles;    ///< Of the feature itself.
   std::vector<std::string> touchable;    ///< Objects that touching stages may touch with the gripper's links.
   bool open_gripper = false;             ///< Planned with the gripper open.
+  std::optional<WorldObject> grasped;    ///< What is between the fingers in the end.
   double touch_padding = 0.002;          ///< Around everything else in touching stages [m].
 };
 

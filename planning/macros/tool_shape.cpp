@@ -34,12 +34,21 @@ bool beyondArm(const Workcell& workcell, int link) {
   return false;
 }
 
+std::vector<std::string> toolLinks(const Workcell& workcell) {
+  if (workcell.gripper && !workcell.gripper->links.empty()) return workcell.gripper->links;
+  std::vector<std::string> names;
+  const auto& links = workcell.model->links();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (beyondArm(workcell, static_cast<int>(i))) names.push_back(links[i].name);
+  }
+  return names;
+}
+
 double toolOverhang(const Workcell& workcell, const Eigen::VectorXd& q) {
-  if (!workcell.gripper) return 0;
   const RobotModel& model = *workcell.model;
   const Pose X_TR = model.forward(q, tipOf(workcell)).inverse();
   double most = 0;
-  for (const auto& name : workcell.gripper->links) {
+  for (const auto& name : toolLinks(workcell)) {
     const auto link = model.linkIndex(name);
     if (!link) continue;
     const Pose X_TL = X_TR * model.forward(q, *link);
@@ -70,7 +79,7 @@ std::vector<std::string> objectsNear(const PlanContext& context, const Eigen::Ve
   std::vector<std::string> names;
   for (const auto* list : {&context.workcell->objects, &context.objects}) {
     for (const auto& object : *list) {
-      if (!object.collides || !object.attached_link.empty()) continue;
+      if (!object.standsInTheWay()) continue;
       if (bodyDistance(here, object, distance + kPoint) < distance) names.push_back(object.name);
     }
   }

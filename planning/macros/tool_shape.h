@@ -12,7 +12,10 @@
 
 namespace longarm::planning {
 
-/// How far the gripper's links reach beyond the tool's origin along tool z at q; 0 when they do not [m].
+/// Links that are the tool: the gripper's where there is one, else all that the arm's last joint moves.
+std::vector<std::string> toolLinks(const Workcell& workcell);
+
+/// How far the tool's links reach beyond its origin along tool z at q; 0 when they do not [m].
 double toolOverhang(const Workcell& workcell, const Eigen::VectorXd& q);
 
 /// How far what the gripper holds (objects attached to links beyond the arm's last joint) reaches below the tool's

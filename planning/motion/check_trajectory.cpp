@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "planning/collision/collision_world.h"
 #include "planning/collision/fcl_shapes.h"
+#include "planning/world/zone.h"
 
 namespace longarm::planning {
 namespace {
@@ -21,6 +22,7 @@ struct SweptBody {
   std::string name;
   int link = -1;
   bool object = false;
+  BodyRole role = BodyRole::kSolid;
   Pose X_LS = Pose::Identity();
   std::shared_ptr<fcl::CollisionObject<double>> fcl;
 };
@@ -38,10 +40,10 @@ class Sweep {
       for (const auto& object : *list) {
         if (!object.collides) continue;
         const int link = object.attached_link.empty() ? -1 : model.linkIndex(object.attached_link).valueOr(-1);
-        add(object.name, link, true, object.shape, object.X_WO);
+        for (const auto& barrier : barriersOf(object)) add(barrier.name, link, true, barrier.shape, barrier.X_WO, barrier.role);
       }
     }
-    pairUp(allowedPairs(workcell.model));
+    pairUp(allowedPairs(workcell));
   }
 
   // Names of a pair that touches at q, or empty names.
@@ -60,10 +62,16 @@ class Sweep {
   }
 
  private:
-  void add(const std::string& name, int link, bool object, const Shape& shape, const Pose& X_LS) {
+  void add(const std::string& name, int link, bool object, const Shape& shape, const Pose& X_LS,
+           BodyRole role = BodyRole::kSolid) {
     const internal::FclGeometry geometry = internal::toFcl(shape);
     if (!geometry) return;
-    m_bodies.push_back({name, link, object, X_LS, std::make_shared<fcl::CollisionObject<double>>(geometry)});
+    m_bodies.push_back({name, link, object, role, X_LS, std::make_shared<fcl::CollisionObject<double>>(geometry)});
+  }
+
+  // Zones are for the arm and what it carries.
+  bool concerns(const SweptBody& zone, const SweptBody& other) const {
+    return zone.role == BodyRole::kSolid || movedByArm(m_workcell, other.link);
   }
 
   void pairUp(const AllowedPairs& allowed) {
@@ -73,7 +81,7 @@ class Sweep {
         const SweptBody& b = m_bodies[j];
         if (a.link == b.link || (a.link < 0 && b.link < 0)) continue;
         if (!a.object && !b.object && allowed.count({std::min(a.link, b.link), std::max(a.link, b.link)})) continue;
-        if (holds(a, b) || holds(b, a)) continue;
+        if (holds(a, b) || holds(b, a) || !concerns(a, b) || !concerns(b, a)) continue;
         m_pairs.emplace_back(&a, &b);
       }
     }
@@ -105,7 +113,7 @@ class Sweep {
   bool excused(const SweptBody& a, const SweptBody& b, double t) const {
     return std::any_of(m_options.allowed.begin(), m_options.allowed.end(), [&](const AllowedContact& contact) {
       const auto names = [&](const SweptBody& object, const SweptBody& link) {
-        return object.object && object.name == contact.object &&
+        return object.object && object.role == BodyRole::kSolid && object.name == contact.object &&
                std::find(contact.links.begin(), contact.links.end(), link.name) != contact.links.end();
       };
       return t >= contact.from_s && t <= contact.to_s && (names(a, b) || names(b, a));

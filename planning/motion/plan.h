@@ -46,6 +46,7 @@ struct Plan {
   std::vector<PlanStage> stages;
   std::vector<WorldObject> obstacles;             ///< Bodies of the feature that it was planned around.
   std::vector<std::string> touchable;             ///< Bodies that the gripper may touch in the end.
+  std::optional<WorldObject> grasped;             ///< What the gripper has between its fingers in the end, in the root frame.
   Eigen::VectorXd start_configuration;            ///< Full q the plan was made for.
   Eigen::VectorXd entry;                          ///< Arm joints where the first free motion ends; empty without one.
   Pose goal = Pose::Identity();                   ///< X_root_tip at the end.
@@ -64,7 +65,8 @@ struct Plan {
 /// Everything a plan depends on.  Values and borrowed constants; thread-compatible.
 struct PlanContext {
   const Workcell* workcell = nullptr;
-  std::vector<WorldObject> objects;               ///< Beyond the workcell's own.
+  std::vector<WorldObject> objects;               ///< Beyond the workcell's own, or in place of those of the same name.
+  std::vector<std::string> held;                  ///< Objects that the gripper is known to hold at the start, besides those that are seen to be.
   Eigen::VectorXd start;                          ///< Full configuration q.
   std::map<std::string, double> arguments;        ///< Of the macro, by MacroParameter::name; others take their default.
   std::vector<Eigen::VectorXd> avoid;             ///< Entries of plans to find another way than.

@@ -237,6 +237,52 @@ void readGoals(FieldReader& file, Scenario& scenario) {
   }
 }
 
+/// Clicks of a step: places in halves of the object's size.
+void readPlaces(FieldReader& reader, const json& list, ScenarioStep& step) {
+  for (const json& place : list) {
+    const bool three = place.is_array() && place.size() == 3 && place[0].is_number() && place[1].is_number() && place[2].is_number();
+    if (!three) return reader.fail("at holds something else than [x, y, z]");
+    const Eigen::Vector3d p(place[0].get<double>(), place[1].get<double>(), place[2].get<double>());
+    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 2) return reader.fail("at holds numbers outside -2 to 2 halves of the object's size");
+    step.at.push_back(p);
+  }
+}
+
+void readArguments(FieldReader& reader, ScenarioStep& step) {
+  const json* map = reader.map("arguments");
+  if (map == nullptr) return;
+  for (const auto& [name, value] : map->items()) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) return reader.fail("arguments." + name + " is no finite number");
+    step.arguments[name] = value.get<double>();
+  }
+}
+
+/// `- {mark: handle, macro: approach_from_side, gripper: close}`
+void readTask(FieldReader& file, Scenario& scenario) {
+  const json& list = file.list("task", 32);
+  for (std::size_t i = 0; i < list.size() && file.status(); ++i) {
+    FieldReader reader(list[i], at(file.place(), "task", i));
+    ScenarioStep step;
+    step.macro = reader.requiredText("macro");
+    const std::string mark = reader.requiredText("mark");
+    if (scenario.object(mark) != nullptr) step.object = mark;
+    else if (scenario.mechanism(mark) != nullptr) step.mechanism = mark;
+    else reader.fail("mark: neither an object nor a mechanism is called \"" + mark + "\"");
+    readPlaces(reader, reader.list("at", 4), step);
+    if (!step.mechanism.empty() && !step.at.empty()) reader.fail("at: of a mechanism its axis is marked");
+    if (step.at.empty() && !step.object.empty() && !std::holds_alternative<Cylinder>(scenario.object(step.object)->body.shape)) {
+      reader.fail("at is missing: where on \"" + step.object + "\" to click, in halves of its size");
+    }
+    readArguments(reader, step);
+    const std::string gripper = reader.text("gripper", "");
+    if (!gripper.empty() && gripper != "close") reader.fail("gripper is \"" + gripper + "\"; expected close");
+    step.close_gripper = !gripper.empty();
+    reader.refuseUnknownKeys();
+    file.adopt(reader.status());
+    scenario.task.push_back(std::move(step));
+  }
+}
+
 void readRange(FieldReader& reader, const char* key, double lower, double upper, double& min, double& max) {
   const std::vector<double> range = reader.numbers(key, 2, lower, upper);
   if (range.empty()) return;
@@ -349,6 +395,7 @@ Result<Scenario> parseScenario(const std::string& text, const std::string& path)
   readImperfections(file, scenario.imperfections);
   readFaults(file, scenario);
   readGoals(file, scenario);
+  readTask(file, scenario);
   readRandomPipe(file, scenario);
   file.refuseUnknownKeys();
   if (!file.status()) return file.status().error();

@@ -74,6 +74,18 @@ struct ScenarioGoal {
   double amount = 0;                     ///< lift: height above the start [m]; open: from the start [rad or m].
 };
 
+/// One thing to do: mark something in the pictures, and carry out a macro with it.
+struct ScenarioStep {
+  std::string object;                    ///< What is marked; empty: the axis of `mechanism`.
+  std::string mechanism;
+  /// Where to click, in halves of a box's edges (a cylinder: of radius, radius and length) from its middle: 1 point, 2 of a
+  /// line, 3 of a plane, 4 of a triad (vertex first).  Empty: the axis of the cylinder or mechanism.
+  std::vector<Eigen::Vector3d> at;
+  std::string macro;
+  std::map<std::string, double> arguments;
+  bool close_gripper = false;            ///< Afterwards.
+};
+
 struct ScenarioLight {
   Eigen::Vector3d direction{-0.35, 0.25, -1};  ///< The way light travels; normalised on use.
   double intensity = 0.75;                     ///< Of the main light, 0 ... 2.
@@ -106,6 +118,7 @@ struct Scenario {
   Imperfections imperfections;
   std::vector<ScenarioFault> faults;
   std::vector<ScenarioGoal> goals;
+  std::vector<ScenarioStep> task;        ///< How an operator would do it; empty: by Grab Pipe on what the goals want grasped.
   std::string start_pose = "look_ahead"; ///< Canned pose of the workcell.
   std::optional<RandomPipe> random_pipe;
 

@@ -28,7 +28,14 @@ struct TriangleMesh {
 
 using Shape = std::variant<Box, Cylinder, Sphere, std::shared_ptr<const TriangleMesh>>;
 
-/// A body of the world: a workcell's fixed object, a sketched box, something held.
+/// What a body is to a motion of the arm.
+enum class BodyRole {
+  kSolid,                                ///< A thing: not run into, but the gripper may take it or touch it.
+  kKeepOut,                              ///< A volume that the arm and what it holds never enter.
+  kKeepIn,                               ///< A box that they never leave.
+};
+
+/// A body of the world: a workcell's fixed object, a sketched box, something held, a zone.
 struct WorldObject {
   std::string name;
   Shape shape;
@@ -36,6 +43,10 @@ struct WorldObject {
   std::string attached_link;             ///< Empty, or the link that carries it.
   Eigen::Vector4d rgba{0.5, 0.5, 0.55, 1};
   bool collides = true;                  ///< false: drawn only.
+  BodyRole role = BodyRole::kSolid;
+
+  /// Whether it is a thing that stands in the world: solid, in the way, and carried by nothing.
+  bool standsInTheWay() const { return collides && role == BodyRole::kSolid && attached_link.empty(); }
 };
 
 }  // namespace longarm::planning

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "planning/world/mesh_file.h"
 #include "planning/world/yaml_section.h"
+#include "planning/world/zone.h"
 
 namespace longarm::planning {
 namespace {
@@ -235,15 +236,25 @@ class WorkcellReader {
       object.name = section.text("name");
       object.X_WO = section.poseOr("pose");
       object.collides = section.flagOr("collides", true);
+      readRole(section, object);
       if (section.has("attached_link")) object.attached_link = linkName(section, "attached_link");
       if (section.has("rgba")) {
         const auto rgba = section.numbers("rgba", 4, NumberRange::kNotNegative);
         object.rgba = Eigen::Map<const Eigen::Vector4d>(rgba.data()).cwiseMin(1);
       }
       readShape(section, object.shape);
+      if (object.role == BodyRole::kKeepIn && !std::holds_alternative<Box>(object.shape)) section.refuse("role", "a box, where it is keep_in");
       section.finish();
       m_cell.objects.push_back(std::move(object));
     }
+  }
+
+  static void readRole(YamlSection& section, WorldObject& object) {
+    const std::string role = section.textOr("role", "solid");
+    if (role == "keep_out") object.role = BodyRole::kKeepOut;
+    else if (role == "keep_in") object.role = BodyRole::kKeepIn;
+    else if (role != "solid") section.refuse("role", "solid, keep_out or keep_in");
+    if (object.role != BodyRole::kSolid) object.rgba = zoneColour(object.role);
   }
 
   /// Exactly one of box, cylinder, sphere, mesh.

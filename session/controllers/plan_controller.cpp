@@ -167,7 +167,15 @@ std::optional<planning::PlanContext> PlanController::contextOf(const QString& na
   context.workcell = workcell.get();
   context.start = workcell->model->neutral();
   workcell->model->assign(*joints, context.start);
-  context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), targetOf(name));
+  if (m_held == nullptr) {
+    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), targetOf(name));
+  } else {
+    context.objects = m_held->obstacles(targetOf(name));
+  }
+  if (m_held != nullptr && m_held->held()) {
+    context.objects.push_back(m_held->held()->at(*workcell, context.start));
+    context.held = {m_held->held()->body.name};
+  }
   context.arguments = arguments(name);
   context.seed = m_seed;
   context.budget_s = m_budget_s;

@@ -15,6 +15,7 @@
 
 #include "core/cancel.h"
 #include "planning/macros/macro.h"
+#include "session/controllers/held_controller.h"
 #include "session/controllers/job_runner.h"
 #include "session/document/document.h"
 
@@ -50,6 +51,8 @@ class PlanController final : public QObject {
 
   /// Newest joints of the robot; null while unknown.  Plans start there.
   void setJointSource(std::function<std::shared_ptr<const JointState>()> source) { m_joints = std::move(source); }
+  /// What is held is planned with; borrowed, null: nothing is known of it.
+  void setHeld(const HeldController* held) { m_held = held; }
   void setSeed(unsigned seed) { m_seed = seed; }
   void setBudget(double seconds) { m_budget_s = seconds; }
 
@@ -127,6 +130,7 @@ class PlanController final : public QObject {
   JobRunner& m_jobs;
   std::shared_ptr<const MacroList> m_macros;
   std::function<std::shared_ptr<const JointState>()> m_joints;
+  const HeldController* m_held = nullptr;
   State m_state = State::kIdle;
   CancelToken m_cancel;
   int m_generation = 0;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "planning/macros/reach_advice.h"
 #include "session/commands/world_commands.h"
 
 namespace longarm::session {
@@ -58,7 +59,7 @@ QString WorldController::whyNotAdd() const {
   return why ? QString() : QString::fromStdString(why.error().message);
 }
 
-Status WorldController::addSelected() {
+Status WorldController::addSelected(WorldRole role) {
   Status why;
   std::vector<WorldItem> made = fromSelection(&why);
   if (!why) return why;
@@ -68,10 +69,29 @@ Status WorldController::addSelected() {
                                              : "Add " + std::to_string(made.size()) + " bodies to the world";
   for (auto& item : made) {
     item.id = {id++};
+    item.role = role;
+    if (const Status checked = checkWorldItem(item); !checked) return checked;
     commands.push_back(addWorldItem(std::move(item)));
   }
   m_history.seal();
   m_history.push(composite(label, std::move(commands)));
+  return {};
+}
+
+Status WorldController::addWorkspace() {
+  const auto& workcell = m_document.workcell();
+  if (!workcell || !workcell->model) return {ErrorCode::kRefused, "No robot is loaded: open its workcell first."};
+  for (const auto& item : items()) {
+    if (item.role == WorldRole::kWorkspace) {
+      return {ErrorCode::kRefused, "'" + item.name + "' is the workspace already: change its numbers in the list of bodies."};
+    }
+  }
+  const auto& model = *workcell->model;
+  const planning::Reach reach = planning::reachOf(*workcell, model.neutral());
+  WorldItem item = workspaceAround(reach.shoulder, reach.length, model.links()[static_cast<std::size_t>(model.rootLink())].name);
+  item.id = m_document.nextWorldId();
+  m_history.seal();
+  m_history.push(addWorldItem(std::move(item)));
   return {};
 }
 

@@ -26,7 +26,9 @@ class WorldController final : public QObject {
   /// Why what is selected cannot be added; empty: it can.
   QString whyNotAdd() const;
   /// Adds what is selected: points as one cloud, everything else as a body of its own.  @returns why not.
-  Status addSelected();
+  Status addSelected(WorldRole role = WorldRole::kObstacle);
+  /// Adds a box as far as the arm reaches, which it is then not to leave.  @returns why not: no robot, or there is one.
+  Status addWorkspace();
   void remove(const std::vector<WorldItemId>& ids);
   /// @returns kInvalidInput naming value and limits; nothing is changed then.
   Status edit(const WorldItem& after);

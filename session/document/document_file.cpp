@@ -118,7 +118,7 @@ json itemJson(const SketchItem& item) {
 json worldJson(const WorldItem& item) {
   json out = {{"id", item.id.value}, {"kind", toString(item.kind)}, {"name", item.name}, {"pose", poseJson(item.parent, item.X_WO)},
               {"size", numbers(item.size.data(), 3)},
-              {"margin_m", item.margin_m}, {"hidden", item.hidden}, {"obstacle", item.obstacle}, {"source", item.source.value}};
+              {"margin_m", item.margin_m}, {"hidden", item.hidden}, {"role", toString(item.role)}, {"source", item.source.value}};
   for (const auto& point : item.points) out["points"].push_back(numbers(point.data(), 3));
   return out;
 }
@@ -328,7 +328,10 @@ WorldItem readWorldItem(const json& value, const std::string& where) {
   item.size = vectorOf<Eigen::VectorXd>(need(value, "size", where), 3, where + ".size");
   item.margin_m = number(need(value, "margin_m", where), where + ".margin_m");
   item.hidden = flag(value, "hidden", where);
-  item.obstacle = flag(value, "obstacle", where);
+  const std::string role = text(need(value, "role", where), where + ".role");
+  const auto known = worldRoleFrom(role);
+  if (!known) fault(where + ".role", "is \"" + role + "\", expected obstacle, drawn, keep_out or workspace");
+  item.role = *known;
   item.source = {idNumber(need(value, "source", where), where + ".source", true)};
   if (value.contains("points")) {
     const json& points = value["points"];

@@ -196,7 +196,7 @@ std::string worldAsJson(const std::vector<WorldItem>& items) {
   for (const auto& item : items) {
     const Eigen::Vector4d q = quaternionXyzw(item.X_WO.linear());
     json object = {{"name", item.name}, {"kind", toString(item.kind)}, {"size", vectorJson(item.size)},
-                   {"margin_m", item.margin_m}, {"obstacle", item.obstacle}};
+                   {"margin_m", item.margin_m}, {"role", toString(item.role)}};
     if (item.kind == WorldKind::kPoints) {
       for (const auto& point : item.points) object["points"].push_back(vectorJson(point));
     } else {

@@ -15,7 +15,7 @@ namespace longarm::session {
 /// demands).  Each body is a group, a node of its own.  Pure functions.
 std::string worldAsObj(const std::vector<WorldItem>& items);
 std::string worldAsGlb(const std::vector<WorldItem>& items);
-/// {"frame", "objects": [{"name", "kind", "pose", "size", "points", "margin_m", "obstacle"}]}
+/// {"frame", "objects": [{"name", "kind", "pose", "size", "points", "margin_m", "role"}]}
 std::string worldAsJson(const std::vector<WorldItem>& items);
 
 /// The kind is told by the ending: .obj, .glb or .json.

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "core/text.h"
+#include "planning/world/zone.h"
 #include "vision/sketch/solids.h"
 
 namespace longarm::session {
@@ -20,6 +21,7 @@ namespace {
 constexpr double kMostMargin_m = 0.1;
 constexpr double kNormal95 = 1.959963984540054;
 const Eigen::Vector4d kColour{0.72, 0.55, 0.95, 0.55};
+constexpr double kBelowBase_m = 0.5;     // a workspace as offered reaches this far below the arm's base
 
 bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -82,12 +84,29 @@ Result<WorldItem> pipeFrom(const vision::Feature& feature, WorldItem item) {
   return item;
 }
 
-planning::WorldObject bodyOf(const WorldItem& item, double grown) {
+vision::OverlayRole overlayRole(WorldRole role) {
+  if (role == WorldRole::kKeepOut) return vision::OverlayRole::kKeepOut;
+  return role == WorldRole::kWorkspace ? vision::OverlayRole::kWorkspace : vision::OverlayRole::kWorld;
+}
+
+planning::BodyRole bodyRole(WorldRole role) {
+  if (role == WorldRole::kKeepOut) return planning::BodyRole::kKeepOut;
+  return role == WorldRole::kWorkspace ? planning::BodyRole::kKeepIn : planning::BodyRole::kSolid;
+}
+
+// All but shape and pose.
+planning::WorldObject plainBody(const WorldItem& item) {
   planning::WorldObject body;
   body.name = item.name;
+  body.role = bodyRole(item.role);
+  body.rgba = body.role == planning::BodyRole::kSolid ? kColour : planning::zoneColour(body.role);
+  body.collides = item.role != WorldRole::kDrawn;
+  return body;
+}
+
+planning::WorldObject bodyOf(const WorldItem& item, double grown) {
+  planning::WorldObject body = plainBody(item);
   body.X_WO = item.X_WO;
-  body.rgba = kColour;
-  body.collides = item.obstacle;
   if (item.kind == WorldKind::kPipe) {
     body.shape = planning::Cylinder{item.size.x() / 2 + grown, item.size.z() + 2 * grown};
   } else {
@@ -115,6 +134,23 @@ std::optional<WorldKind> worldKindFrom(const std::string& word) {
   return std::nullopt;
 }
 
+const char* toString(WorldRole role) {
+  switch (role) {
+    case WorldRole::kObstacle: return "obstacle";
+    case WorldRole::kDrawn: return "drawn";
+    case WorldRole::kKeepOut: return "keep_out";
+    case WorldRole::kWorkspace: return "workspace";
+  }
+  return "obstacle";
+}
+
+std::optional<WorldRole> worldRoleFrom(const std::string& word) {
+  for (const WorldRole role : {WorldRole::kObstacle, WorldRole::kDrawn, WorldRole::kKeepOut, WorldRole::kWorkspace}) {
+    if (word == toString(role)) return role;
+  }
+  return std::nullopt;
+}
+
 bool operator==(const WorldItem& a, const WorldItem& b) {
   if (a.points.size() != b.points.size()) return false;
   for (std::size_t i = 0; i < a.points.size(); ++i) {
@@ -122,7 +158,7 @@ bool operator==(const WorldItem& a, const WorldItem& b) {
   }
   return a.id == b.id && a.kind == b.kind && a.name == b.name && a.parent == b.parent &&
          sameBits(a.X_WO.matrix().reshaped(), b.X_WO.matrix().reshaped()) && sameBits(a.size, b.size) &&
-         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.obstacle == b.obstacle && a.source == b.source;
+         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.role == b.role && a.source == b.source;
 }
 
 std::uint64_t hashOf(const WorldItem& item) {
@@ -145,7 +181,7 @@ std::uint64_t hashOf(const WorldItem& item) {
     for (int i = 0; i < 3; ++i) mixNumber(point(i));
   }
   mixNumber(item.margin_m);
-  mix((item.hidden ? 1U : 0U) | (item.obstacle ? 2U : 0U));
+  mix((item.hidden ? 1U : 0U) | (static_cast<std::uint64_t>(item.role) << 1U));
   mix(item.source.value);
   return hash;
 }
@@ -192,6 +228,12 @@ Status checkWorldItem(const WorldItem& item) {
   if (!(item.margin_m >= 0 && item.margin_m <= 1)) {
     return fail("a margin of " + formatNumber(item.margin_m) + " m is outside 0 to 1 m.");
   }
+  if (item.role == WorldRole::kWorkspace && item.kind != WorldKind::kBox) {
+    return fail(std::string("a ") + toString(item.kind) + " cannot be a workspace: mark a box, or make it a keep-out zone.");
+  }
+  if (item.role == WorldRole::kWorkspace && item.size.minCoeff() <= 2 * item.margin_m) {
+    return fail("its margin of " + formatNumber(item.margin_m) + " m leaves nothing of the workspace.");
+  }
   if (!item.X_WO.matrix().allFinite()) return fail("its pose is not finite.");
   if ((item.kind == WorldKind::kPoints) == item.points.empty()) return fail("it has no points, or points and a body.");
   for (const auto& point : item.points) {
@@ -201,16 +243,14 @@ Status checkWorldItem(const WorldItem& item) {
 }
 
 std::vector<planning::WorldObject> bodiesOf(const WorldItem& item, bool with_margin) {
-  const double grown = with_margin ? item.margin_m : 0;
+  const double grown = with_margin ? (item.role == WorldRole::kWorkspace ? -item.margin_m : item.margin_m) : 0;
   if (item.kind != WorldKind::kPoints) return {bodyOf(item, grown)};
   std::vector<planning::WorldObject> bodies;
   for (std::size_t i = 0; i < item.points.size(); ++i) {
-    planning::WorldObject body;
-    body.name = item.points.size() == 1 ? item.name : item.name + " " + std::to_string(i + 1);
+    planning::WorldObject body = plainBody(item);
+    if (item.points.size() > 1) body.name += " " + std::to_string(i + 1);
     body.shape = planning::Sphere{item.size.x() / 2 + grown};
     body.X_WO.translation() = item.points[i];
-    body.rgba = kColour;
-    body.collides = item.obstacle;
     bodies.push_back(std::move(body));
   }
   return bodies;
@@ -219,18 +259,28 @@ std::vector<planning::WorldObject> bodiesOf(const WorldItem& item, bool with_mar
 std::vector<planning::WorldObject> obstaclesOf(const std::vector<WorldItem>& items, const std::string& frame, FeatureId skip) {
   std::vector<planning::WorldObject> all;
   for (const auto& item : items) {
-    const bool handled = skip.valid() && item.source == skip;
-    if (!item.obstacle || item.parent != frame || handled) continue;
+    const bool handled = skip.valid() && item.source == skip && item.role == WorldRole::kObstacle;
+    if (item.role == WorldRole::kDrawn || item.parent != frame || handled) continue;
     for (auto& body : bodiesOf(item, true)) all.push_back(std::move(body));
   }
   return all;
 }
 
+WorldItem workspaceAround(const Vector3d& base, double reach_m, const std::string& frame) {
+  WorldItem item;
+  item.name = "Workspace";
+  item.parent = frame;
+  item.role = WorldRole::kWorkspace;
+  item.size = {2 * reach_m, 2 * reach_m, reach_m + kBelowBase_m};
+  item.X_WO.translation() = base + Vector3d(0, 0, (reach_m - kBelowBase_m) / 2);
+  return item;
+}
+
 void addWorldItem(const WorldItem& item, const vision::View& view, vision::Overlay* overlay) {
   if (item.hidden || item.parent != view.parent) return;
   vision::SolidLook look;
-  look.role = vision::OverlayRole::kWorld;
-  look.filled = true;
+  look.role = overlayRole(item.role);
+  look.filled = item.role != WorldRole::kWorkspace;   // everything is inside
   for (const auto& point : item.points) vision::addSphere(point, item.size.x() / 2, view, look, overlay);
   if (item.kind == WorldKind::kPoints) return;
   if (item.kind == WorldKind::kPipe) vision::addCylinder(item.X_WO, item.size.x() / 2, item.size.z(), view, look, overlay);

@@ -28,6 +28,16 @@ enum class WorldKind { kBox, kSlab, kPipe, kPoints };
 const char* toString(WorldKind kind);                        ///< "box", "slab", "pipe", "points"
 std::optional<WorldKind> worldKindFrom(const std::string& word);
 
+/// What it is to the robot's motions.
+enum class WorldRole {
+  kObstacle,                                                 ///< Kept clear of; the gripper may take or touch it.
+  kDrawn,                                                    ///< Drawn, but planned through.
+  kKeepOut,                                                  ///< Never entered by anything of the arm.
+  kWorkspace,                                                ///< Never left; boxes only.
+};
+const char* toString(WorldRole role);                        ///< "obstacle", "drawn", "keep_out", "workspace"
+std::optional<WorldRole> worldRoleFrom(const std::string& word);
+
 /// A body, or a cloud of small ones.  It stays as it is when the sketch it came from changes or goes.  Plain value;
 /// equality is bit for bit.
 struct WorldItem {
@@ -42,7 +52,7 @@ struct WorldItem {
   std::vector<Eigen::Vector3d> points;                       ///< Points only [m].
   double margin_m = 0;                                       ///< Planning keeps this much more away, for what is not known.
   bool hidden = false;
-  bool obstacle = true;                                      ///< false: drawn, but planned through.
+  WorldRole role = WorldRole::kObstacle;
   FeatureId source;                                          ///< It came from; may be gone.
 
   friend bool operator==(const WorldItem& a, const WorldItem& b);
@@ -59,15 +69,19 @@ constexpr double kLeastSize_m = 0.001, kMostSize_m = 50;
 /// 0.1 m.  The slab of a plane lies behind the marked face.
 /// @returns kInvalidInput with a sentence: a bare line has no thickness; picks that reject right angles are no box.
 Result<WorldItem> worldItemFrom(const vision::Feature& feature);
+/// A workspace around the arm as the robot stands: as far as it reaches, from the floor up; to be made smaller.
+/// @param reach_m Of the arm from its base.
+WorldItem workspaceAround(const Eigen::Vector3d& base, double reach_m, const std::string& frame);
 /// Several measured points as one cloud.  @pre not empty, all of them points of one frame
 WorldItem worldPointsFrom(const std::vector<vision::Feature>& points);
 
 /// @returns kInvalidInput naming value and limits.
 Status checkWorldItem(const WorldItem& item);
 
-/// What planning and scene need: one body, or one per point.  @param with_margin Enlarged by it on every side.
+/// What planning and scene need: one body, or one per point.  @param with_margin Enlarged by it on every side (a workspace:
+/// made smaller).
 std::vector<planning::WorldObject> bodiesOf(const WorldItem& item, bool with_margin);
-/// Bodies that a plan must keep clear of: obstacles in this frame, margins included; without those that came from `skip`,
+/// What a plan must heed: obstacles and zones in this frame, margins included; without obstacles that came from `skip`,
 /// which the macro handles itself.
 std::vector<planning::WorldObject> obstaclesOf(const std::vector<WorldItem>& items, const std::string& frame, FeatureId skip);
 

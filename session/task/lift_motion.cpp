@@ -12,20 +12,6 @@
 namespace longarm::session {
 namespace {
 
-planning::WorldObject heldPipe(const planning::Workcell& workcell, const Pose& X_RT, const vision::Feature& pipe,
-                               double radius) {
-  const Eigen::Vector3d a = pipe.vertices[0].xyz, b = pipe.vertices[1].xyz;
-  Pose X_RO = Pose::Identity();
-  X_RO.linear() = rotationWithZ(b - a);
-  X_RO.translation() = 0.5 * (a + b);
-  planning::WorldObject out;
-  out.name = "held pipe";
-  out.shape = planning::Cylinder{radius, (b - a).norm()};
-  out.attached_link = workcell.arm.tip_link;
-  out.X_WO = X_RT.inverse() * X_RO;
-  return out;
-}
-
 // Straight up first, then a little to or from the robot, or to either side.
 std::vector<Eigen::Vector3d> detours(const Eigen::Vector3d& p_RT) {
   const Eigen::Vector3d out = Eigen::Vector3d(p_RT.x(), p_RT.y(), 0).normalized();
@@ -41,18 +27,20 @@ std::vector<Eigen::Vector3d> detours(const Eigen::Vector3d& p_RT) {
 
 }  // namespace
 
-Result<Trajectory> planLift(const planning::Workcell& workcell, const Eigen::VectorXd& q, const vision::Feature& pipe,
-                            double radius, double height) {
+Result<Trajectory> planLift(const planning::Workcell& workcell, const Eigen::VectorXd& q, const planning::WorldObject& grasped,
+                            double height) {
   const auto& model = *workcell.model;
   const auto tip = model.linkIndex(workcell.arm.tip_link);
   if (!tip) return tip.error();
   const Pose X_RT = model.forward(q, *tip);
   auto objects = workcell.objects;
-  objects.push_back(heldPipe(workcell, X_RT, pipe, radius));
+  objects.push_back(grasped);
+  objects.back().attached_link = workcell.arm.tip_link;
+  objects.back().X_WO = X_RT.inverse() * grasped.X_WO;
   planning::CollisionOptions options;
   options.moving = planning::movingIndices(model, workcell.arm);
-  planning::CollisionWorld world(workcell.model, objects, planning::allowedPairs(workcell.model), options);
-  if (workcell.gripper) world.allow("held pipe", workcell.gripper->links);
+  planning::CollisionWorld world(workcell.model, objects, planning::allowedPairs(workcell), options);
+  if (workcell.gripper) world.allow(grasped.name, workcell.gripper->links);
   // What the grasp is close to already, the lift may leave as close.
   const auto [outside, inside] = world.clearances(q, 2 * options.padding);
   world.setPadding(std::min(options.padding, 0.8 * outside), std::min(options.self_padding, 0.8 * inside));

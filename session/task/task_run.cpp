@@ -1,5 +1,6 @@
 #include "session/task/task_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -20,16 +21,54 @@ constexpr double kConnect_s = 15, kAim_s = 12, kPictures_s = 30, kGripper_s = 6,
 constexpr double kPlanning_s = 10;
 constexpr double kSettle_s = 0.3;        // between the end of a motion and a picture
 constexpr double kLiftAbove = 0.02;      // more than the goal asks for [m]
+constexpr double kAxisShown = 0.15;      // to either side of the middle of a mechanism's axis [m]
 constexpr double kUsualLift = 0.1;       // where no goal says how far [m]
 
 std::string millimetres(double metres) { return formatFixed(1000 * metres, 1) + " mm"; }
 
-// The object of the first goal that wants something taken hold of.
-std::string graspObject(const planning::Scenario& scenario) {
+// Without a task of its own: Grab Pipe on what the first goal wants taken hold of.
+std::vector<planning::ScenarioStep> taskOf(const planning::Scenario& scenario) {
+  if (!scenario.task.empty()) return scenario.task;
+  planning::ScenarioStep grab;
   for (const auto& goal : scenario.goals) {
-    if (goal.kind == "grasp" || goal.kind == "lift") return goal.object;
+    if (grab.object.empty() && (goal.kind == "grasp" || goal.kind == "lift")) grab.object = goal.object;
   }
-  return scenario.random_pipe ? scenario.random_pipe->object : std::string();
+  if (grab.object.empty() && scenario.random_pipe) grab.object = scenario.random_pipe->object;
+  const auto* object = scenario.object(grab.object);
+  const auto* cylinder = object != nullptr ? std::get_if<planning::Cylinder>(&object->body.shape) : nullptr;
+  if (cylinder == nullptr) return {};
+  grab.macro = "grab_pipe";
+  grab.arguments = {{"radius", cylinder->radius}};
+  grab.close_gripper = true;
+  return {grab};
+}
+
+// Half the size of a shape along its own axes.
+Eigen::Vector3d halves(const planning::Shape& shape) {
+  if (const auto* box = std::get_if<planning::Box>(&shape)) return 0.5 * box->size;
+  if (const auto* cylinder = std::get_if<planning::Cylinder>(&shape)) return {cylinder->radius, cylinder->radius, 0.5 * cylinder->length};
+  if (const auto* sphere = std::get_if<planning::Sphere>(&shape)) return Eigen::Vector3d::Constant(sphere->radius);
+  return Eigen::Vector3d::Ones();
+}
+
+vision::FeatureKind kindOf(std::size_t places) {
+  constexpr vision::FeatureKind kKinds[] = {vision::FeatureKind::kPoint, vision::FeatureKind::kLine, vision::FeatureKind::kPlane,
+                                            vision::FeatureKind::kTriad};
+  return kKinds[std::min<std::size_t>(places, 4) - 1];
+}
+
+Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+// Distance of the tool from the line through the first two places, or from the only one.
+double offTheMark(const std::vector<Eigen::Vector3d>& places, const Eigen::Vector3d& tool) {
+  const Eigen::Vector3d off = tool - places[0];
+  if (places.size() < 2) return off.norm();
+  const Eigen::Vector3d along = (places[1] - places[0]).normalized();
+  return (off - off.dot(along) * along).norm();
 }
 
 double liftHeight(const planning::Scenario& scenario) {
@@ -46,16 +85,9 @@ TaskRun::TaskRun(const planning::Workcell& workcell, planning::Scenario scenario
     : m_workcell(std::make_shared<planning::Workcell>(workcell)),
       m_scenario(std::move(scenario)),
       m_options(options),
-      m_object(graspObject(m_scenario)),
+      m_task(taskOf(m_scenario)),
       m_faults(std::move(faults)),
-      m_hand(options.seed, options.click_sigma_px) {
-  const auto* object = m_scenario.object(m_object);
-  if (object == nullptr) return;
-  if (const auto* cylinder = std::get_if<planning::Cylinder>(&object->body.shape)) {
-    m_radius = cylinder->radius;
-    m_length = cylinder->length;
-  }
-}
+      m_hand(options.seed, options.click_sigma_px) {}
 
 TaskRun::~TaskRun() = default;
 
@@ -84,24 +116,36 @@ Status TaskRun::start() {
 
 double TaskRun::elapsed() const { return m_runtime->clock().now_s() - m_started_s; }
 
+bool TaskRun::stage(const char* name, StageResult (TaskRun::*run)(), TaskReport& report) {
+  const double begin = elapsed();
+  const auto result = (this->*run)();
+  report.stages.push_back({name, result.ok(), elapsed() - begin, result ? *result : result.error().message});
+  if (result) return true;
+  report.errors.push_back(std::string(name) + ": " + result.error().message);
+  return false;
+}
+
+bool TaskRun::step(const planning::ScenarioStep& step, TaskReport& report) {
+  m_step = step;
+  const bool opens = !m_plan.has_value();        // later steps leave the gripper as it is
+  const bool marked = stage("aim", &TaskRun::aim, report) && stage("snapshot", &TaskRun::snapshot, report) &&
+                      stage("measure", &TaskRun::measure, report) && stage("plan", &TaskRun::makePlan, report);
+  if (!marked || (opens && !stage("open", &TaskRun::openGripper, report)) || !stage("play", &TaskRun::play, report)) return false;
+  if (!step.close_gripper) return true;
+  m_grasped = m_plan->grasped;
+  return stage("close", &TaskRun::closeGripper, report);
+}
+
 TaskReport TaskRun::run() {
-  const std::pair<const char*, StageResult (TaskRun::*)()> stages[] = {
-      {"connect", &TaskRun::connect},    {"aim", &TaskRun::aim},     {"snapshot", &TaskRun::snapshot},
-      {"measure", &TaskRun::measure},    {"plan", &TaskRun::makePlan}, {"open", &TaskRun::openGripper},
-      {"play", &TaskRun::play},          {"close", &TaskRun::closeGripper}, {"lift", &TaskRun::lift},
-      {"verify", &TaskRun::verify}};
   TaskReport report;
-  report.success = true;
-  for (const auto& [name, stage] : stages) {
-    const double begin = elapsed();
-    const auto result = (this->*stage)();
-    report.stages.push_back({name, result.ok(), elapsed() - begin, result ? *result : result.error().message});
-    if (result) continue;
-    report.success = false;
-    report.errors.push_back(std::string(name) + ": " + result.error().message);
-    settleAfterStop();
-    break;
-  }
+  const auto wants_lift = [this] {
+    const auto& goals = m_scenario.goals;
+    return m_grasped && (m_scenario.task.empty() || std::any_of(goals.begin(), goals.end(), [](const auto& goal) { return goal.kind == "lift"; }));
+  };
+  report.success = stage("connect", &TaskRun::connect, report);
+  for (const auto& next : m_task) report.success = report.success && step(next, report);
+  report.success = report.success && (!wants_lift() || stage("lift", &TaskRun::lift, report)) && stage("verify", &TaskRun::verify, report);
+  if (!report.success) settleAfterStop();
   std::lock_guard<std::mutex> lock(m_mutex);
   report.stops = m_stops;
   report.success = report.success && m_stops.empty();
@@ -116,8 +160,8 @@ StageResult TaskRun::connect() {
   if (!pair) return pair.error();
   m_cameras = *pair;
   if (auto released = m_runtime->resetStop(); !released) return released.error();
-  if (m_length <= 0) {
-    return Error{ErrorCode::kInvalidInput, "the scenario " + m_scenario.name + " has no pipe to take hold of"};
+  if (m_task.empty()) {
+    return Error{ErrorCode::kInvalidInput, "the scenario " + m_scenario.name + " has neither a task nor a pipe to take hold of"};
   }
   return std::string("the robot's joints are known");
 }
@@ -125,10 +169,10 @@ StageResult TaskRun::connect() {
 StageResult TaskRun::aim() {
   const auto known = truth();
   if (!known) return known.error();
-  const auto ends = pipeEnds(*known);
-  if (!ends) return ends.error();
+  const auto marks = places(*known);
+  if (!marks) return marks.error();
   const auto joints = m_runtime->jointState();
-  const auto wishes = aimAt(*m_workcell, {m_cameras.first, m_cameras.second}, 0.5 * (ends->first + ends->second), *joints);
+  const auto wishes = aimAt(*m_workcell, {m_cameras.first, m_cameras.second}, middleOf(*marks), *joints);
   if (!wishes) return wishes.error();
   std::string said;
   for (const auto& wish : *wishes) {
@@ -166,6 +210,7 @@ StageResult TaskRun::snapshot() {
     if (auto status = m_runtime->streamCamera(name, true); !status) return status.error();
   }
   const double after_s = m_runtime->clock().now_s();
+  m_snapshots.clear();
   std::optional<StampedFrame> left, right;
   Status pair{ErrorCode::kTimeout, "no pictures"};
   const auto taken = [&] {
@@ -188,43 +233,48 @@ StageResult TaskRun::snapshot() {
 StageResult TaskRun::measure() {
   const auto known = truth();
   if (!known) return known.error();
-  const auto ends = pipeEnds(*known);
-  if (!ends) return ends.error();
+  const auto marks = places(*known);
+  if (!marks) return marks.error();
   std::vector<std::vector<vision::Sighting>> vertices;
-  for (const auto& end : {ends->first, ends->second}) {
+  for (const auto& place : *marks) {
     std::vector<vision::Sighting> sightings;
     for (const auto& snapshot : m_snapshots) {
       const auto* camera = m_workcell->camera(snapshot.view.name);
       const auto pose = known->links.find(camera->link);
       if (pose == known->links.end()) return Error{ErrorCode::kNotFound, "the truth does not know camera " + camera->name};
-      const auto pixel = m_hand.click(snapshot.view.camera, pose->second, end);
+      const auto pixel = m_hand.click(snapshot.view.camera, pose->second, place);
       if (!pixel) return Error{pixel.error().code, snapshot.view.name + ": " + pixel.error().message};
       sightings.push_back({&snapshot.view, *pixel});
     }
     vertices.push_back(std::move(sightings));
   }
-  auto measured = vision::measureFeature(m_object, vision::FeatureKind::kLine, vertices);
+  auto measured = vision::measureFeature(m_step.object.empty() ? m_step.mechanism : m_step.object, kindOf(marks->size()), vertices);
   if (!measured) return measured.error();
-  m_pipe = std::move(*measured);
-  const Eigen::Vector3d middle = 0.5 * (m_pipe->vertices[0].xyz + m_pipe->vertices[1].xyz);
-  return "length " + millimetres(m_pipe->length()) + " +- " + millimetres(2 * m_pipe->lengthSigma()) + ", truly " +
-         millimetres((ends->second - ends->first).norm()) + "; its middle is " +
-         millimetres((middle - 0.5 * (ends->first + ends->second)).norm()) + " off";
+  m_feature = std::move(*measured);
+  double worst = 0;
+  for (std::size_t i = 0; i < marks->size(); ++i) worst = std::max(worst, (m_feature->vertices[i].xyz - (*marks)[i]).norm());
+  std::string said = "marked within " + millimetres(worst);
+  if (m_feature->kind == vision::FeatureKind::kLine) {
+    said += "; length " + millimetres(m_feature->length()) + " +- " + millimetres(2 * m_feature->lengthSigma()) + ", truly " +
+            millimetres(((*marks)[1] - (*marks)[0]).norm());
+  }
+  return said;
 }
 
 StageResult TaskRun::makePlan() {
   const auto macros = planning::makeMacros(*m_workcell);
-  const auto* macro = planning::findMacro(macros, "grab_pipe");
-  if (macro == nullptr) return Error{ErrorCode::kNotFound, "the workcell has no gripper for grab_pipe"};
+  const auto* macro = planning::findMacro(macros, m_step.macro);
+  if (macro == nullptr) return Error{ErrorCode::kNotFound, "the workcell has no macro \"" + m_step.macro + "\""};
   const auto q = m_runtime->configuration();
   if (!q) return q.error();
   planning::PlanContext context;
   context.workcell = m_workcell.get();
   context.start = *q;
+  context.arguments = m_step.arguments;
   context.seed = m_options.seed;
   context.budget_s = kPlanning_s;
   context.cancel = m_options.cancel;
-  planning::Plan plan = macro->plan(context, &*m_pipe);
+  planning::Plan plan = macro->plan(context, &*m_feature);
   if (!plan.ok()) return Error{ErrorCode::kNoSolution, std::string(planning::toString(plan.status)) + ": " + plan.reason};
   if (plan.go == "no_go") return Error{ErrorCode::kRefused, "no_go: " + plan.accuracy_note};
   m_plan = std::move(plan);
@@ -249,11 +299,9 @@ StageResult TaskRun::play() {
   const auto known = truth();
   if (!known) return known.error();
   const auto tool = known->links.find(m_workcell->arm.tip_link);
-  const auto ends = pipeEnds(*known);
-  if (tool == known->links.end() || !ends) return std::string("the motion has reached its end");
-  const Eigen::Vector3d along = (ends->second - ends->first).normalized();
-  const Eigen::Vector3d off = tool->second.translation() - ends->first;
-  return "the tool is " + millimetres((off - off.dot(along) * along).norm()) + " from the pipe's axis";
+  const auto marks = places(*known);
+  if (tool == known->links.end() || !marks) return std::string("the motion has reached its end");
+  return "the tool is " + millimetres(offTheMark(*marks, tool->second.translation())) + " from the mark";
 }
 
 Status TaskRun::playLoaded(double timeout_s, bool with_faults) {
@@ -281,7 +329,7 @@ StageResult TaskRun::lift() {
   const auto q = m_runtime->configuration();
   if (!q) return q.error();
   const double height = liftHeight(m_scenario);
-  const auto motion = planLift(*m_workcell, *q, *m_pipe, m_radius, height);
+  const auto motion = planLift(*m_workcell, *q, *m_grasped, height);
   if (!motion) return motion.error();
   if (auto status = m_runtime->load(*motion); !status) return status.error();
   if (auto status = m_runtime->play(); !status) return status.error();
@@ -292,7 +340,8 @@ StageResult TaskRun::lift() {
 StageResult TaskRun::verify() {
   const auto known = truth();
   if (!known) return known.error();
-  if (known->held != m_object) {
+  const std::string wanted = m_task.front().close_gripper ? m_task.front().object : std::string();
+  if (known->held != wanted) {
     return Error{ErrorCode::kNoSolution, known->held.empty() ? "nothing is held" : "\"" + known->held + "\" is held"};
   }
   for (const auto& contact : known->contacts) {
@@ -310,11 +359,18 @@ Result<TaskTruth> TaskRun::truth() {
   return parseTruth(*answer);
 }
 
-Result<std::pair<Eigen::Vector3d, Eigen::Vector3d>> TaskRun::pipeEnds(const TaskTruth& truth) const {
-  const auto pose = truth.objects.find(m_object);
-  if (pose == truth.objects.end()) return Error{ErrorCode::kNotFound, "the truth does not know \"" + m_object + "\""};
-  const Eigen::Vector3d half = pose->second.linear().col(2) * m_length / 2;
-  return std::pair<Eigen::Vector3d, Eigen::Vector3d>(pose->second.translation() - half, pose->second.translation() + half);
+Result<std::vector<Eigen::Vector3d>> TaskRun::places(const TaskTruth& truth) const {
+  if (const auto* mechanism = m_scenario.mechanism(m_step.mechanism)) {
+    const Eigen::Vector3d half = kAxisShown * mechanism->axis;
+    return std::vector<Eigen::Vector3d>{mechanism->origin - half, mechanism->origin + half};
+  }
+  const auto pose = truth.objects.find(m_step.object);
+  const auto* object = m_scenario.object(m_step.object);
+  if (pose == truth.objects.end() || object == nullptr) return Error{ErrorCode::kNotFound, "the truth does not know \"" + m_step.object + "\""};
+  const std::vector<Eigen::Vector3d> axis{{0, 0, -1}, {0, 0, 1}};
+  std::vector<Eigen::Vector3d> out;
+  for (const auto& at : m_step.at.empty() ? axis : m_step.at) out.push_back(pose->second * at.cwiseProduct(halves(object->body.shape)));
+  return out;
 }
 
 std::size_t TaskRun::contacts() {

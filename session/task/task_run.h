@@ -42,6 +42,9 @@ class TaskRun {
 
  private:
   StageResult connect();
+  /// One thing to do: marks it, plans, plays, and takes hold if that is wanted.  False: a stage failed.
+  bool step(const planning::ScenarioStep& step, TaskReport& report);
+  bool stage(const char* name, StageResult (TaskRun::*run)(), TaskReport& report);
   StageResult aim();
   StageResult snapshot();
   StageResult measure();
@@ -59,7 +62,8 @@ class TaskRun {
   Status checkRobot();
   Status playLoaded(double timeout_s, bool with_faults);
   Result<TaskTruth> truth();
-  Result<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pipeEnds(const TaskTruth& truth) const;
+  /// Where the step under way is to be clicked, in the world.
+  Result<std::vector<Eigen::Vector3d>> places(const TaskTruth& truth) const;
   std::optional<StampedFrame> freshFrame(const std::string& camera, double after_s) const;
   std::optional<TaskStop> firstStop() const;
   void settleAfterStop();
@@ -68,14 +72,15 @@ class TaskRun {
   const std::shared_ptr<const planning::Workcell> m_workcell;
   const planning::Scenario m_scenario;
   const TaskOptions m_options;
-  std::string m_object;                  // what is to be grasped
-  double m_radius = 0.02, m_length = 0;  // of it
+  std::vector<planning::ScenarioStep> m_task;
+  planning::ScenarioStep m_step;         // the one under way
+  std::optional<planning::WorldObject> m_grasped;
   TaskFaults m_faults;
   SyntheticHand m_hand;
   double m_started_s = 0, m_lost_since_s = -1;
   std::pair<std::string, std::string> m_cameras;
   std::vector<vision::Snapshot> m_snapshots;
-  std::optional<vision::Feature> m_pipe;
+  std::optional<vision::Feature> m_feature;
   std::optional<planning::Plan> m_plan;
   mutable std::mutex m_mutex;            // guards m_stops
   std::vector<TaskStop> m_stops;

@@ -66,6 +66,7 @@ std::vector<Contest> stereoContests();
 #ifdef LONGARM_WITH_KDL
 std::vector<Contest> robotContests();
 #endif
+std::vector<Contest> motionContests();
 std::vector<Budget> stereoBudgets();
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
 #else
   for (const char* name : {"fk_jacobian", "ik", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
 #endif
+  for (auto& contest : motionContests()) contests.push_back(std::move(contest));
   for (auto& contest : paneContests(&skipped)) contests.push_back(std::move(contest));
   std::vector<Budget> budgets = stereoBudgets();
   for (auto& budget : paneBudgets(&skipped)) budgets.push_back(std::move(budget));

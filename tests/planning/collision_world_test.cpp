@@ -115,6 +115,42 @@ TEST(CollisionWorld, IgnoresObjectsThatAreOnlyDrawn) {
   EXPECT_FALSE(world.inCollision(Eigen::Vector3d::Zero()));
 }
 
+TEST(CollisionWorld, ZonesAreForTheArmAndWhatItCarriesAndOpenForNobody) {
+  const auto model = modelFrom(planarArmUrdf());
+  WorldObject zone = boxAt("drill", {0.05, 0.05, 0.05}, {1.1, 0, 0});
+  zone.role = BodyRole::kKeepOut;
+  CollisionWorld world(model, {zone}, allowedPairs(model), noPadding());
+  world.allow("drill", {"three"});       // as a macro does with what it means to touch
+  Contact contact;
+  EXPECT_TRUE(world.inCollision(Eigen::Vector3d::Zero(), &contact));
+  EXPECT_EQ(contact.sentence(), "three is inside the keep-out zone drill");
+  EXPECT_TRUE(world.inZone(Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(world.inZone(Eigen::Vector3d(1, 0, 0)));
+  WorldObject around = boxAt("at the base", {0.1, 0.1, 0.1}, {0, 0, 0});
+  around.role = BodyRole::kKeepOut;
+  CollisionOptions last = noPadding();
+  last.moving = {2};
+  EXPECT_FALSE(CollisionWorld(model, {around}, allowedPairs(model), last).touching(Eigen::Vector3d::Zero()))
+      << "only the third joint moves, and it is elsewhere";
+}
+
+TEST(CollisionWorld, AWorkspaceIsNotLeftAtAnyInstantOfAMotion) {
+  const auto model = modelFrom(planarArmUrdf());
+  WorldObject room = boxAt("cell", {2.6, 1.0, 1}, {0.9, 0, 0});
+  room.role = BodyRole::kKeepIn;
+  const CollisionWorld world(model, {room}, allowedPairs(model), noPadding());
+  EXPECT_FALSE(world.inCollision(Eigen::Vector3d::Zero()));
+  EXPECT_NEAR(world.clearance(Eigen::Vector3d::Zero()), 0.4, 0.1);
+  Contact contact;
+  EXPECT_TRUE(world.inCollision(Eigen::Vector3d(1.2, 0, 0), &contact));
+  EXPECT_NE(contact.sentence().find("is outside the workspace cell"), std::string::npos) << contact.sentence();
+  // Folded back at both ends, stretched in the middle: out through the side and in again.
+  const Eigen::Vector3d a(0.9, -1.9, 0), b(0.9, 1.9, 0);
+  ASSERT_FALSE(world.inCollision(a));
+  EXPECT_TRUE(world.inCollision(Eigen::Vector3d(0.9, 0, 0)));
+  EXPECT_FALSE(world.segmentFree(a, b));
+}
+
 // Cases in which FCL's signed distance hangs or aborts, and its other solver reports clearance.
 TEST(CollisionWorld, SurvivesConcentricAndTouchingShapes) {
   const struct { const char* geometry; Shape shape; double offset; } cases[] = {

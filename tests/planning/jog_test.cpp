@@ -38,7 +38,9 @@ class Bench {
       m_q[m_cell->model->joints()[static_cast<std::size_t>(*m_cell->model->jointIndex(joint))].q_index] = value;
     }
     m_jogger = std::make_unique<Jogger>(m_cell);
-    m_world = std::make_unique<CollisionWorld>(m_cell->model, m_cell->objects, allowedPairs(m_cell->model));
+    CollisionOptions options;
+    options.moving = movingIndices(*m_cell->model, m_cell->arm);
+    m_world = std::make_unique<CollisionWorld>(m_cell->model, m_cell->objects, allowedPairs(m_cell->model), options);
     m_world->setPadding(0.5 * m_world->padding(), 0.5 * m_world->selfPadding());   // what segmentFree() promises in between
   }
 
@@ -251,6 +253,34 @@ TEST(Jog, LeadsOnlyAwayFromWhatItIsTooCloseTo) {
   EXPECT_GT(bench.tip().translation().z(), z - 0.01);
   bench.hold(along(JogFrame::kBase, Vector3d::UnitZ(), 1), 2);
   EXPECT_GT(bench.tip().translation().z(), z + 0.01);
+}
+
+TEST(Jog, NeverEntersAZoneNorLeavesTheWorkspaceThroughContactEither) {
+  Bench probe;
+  WorldObject zone = slab(probe.tip().translation().z() - 0.25);
+  zone.role = BodyRole::kKeepOut;
+  Bench bench("ready", {zone});
+  JogCommand creep = along(JogFrame::kBase, -Vector3d::UnitZ(), 1);
+  bench.hold(creep, 6);
+  creep.through_contact = true;
+  bench.hold(creep, 6);
+  EXPECT_FALSE(bench.touches());
+  EXPECT_NE(bench.jogger().report().reason.find("slab"), std::string::npos) << bench.jogger().report().reason;
+  WorldObject room;
+  room.name = "cell";
+  room.role = BodyRole::kKeepIn;
+  room.shape = Box{{6, 0.8, 6}};
+  Bench inside("ready", {room});
+  ASSERT_FALSE(inside.touches());
+  for (const bool through : {false, true}) {
+    JogCommand aside = along(JogFrame::kBase, Vector3d::UnitY(), 1);
+    aside.through_contact = through;
+    inside.hold(aside, 6);
+    EXPECT_FALSE(inside.touches());
+    EXPECT_GT(inside.tip().translation().y(), 0.1);
+    EXPECT_LT(inside.tip().translation().y(), 0.4);
+  }
+  EXPECT_NE(inside.jogger().report().reason.find("workspace"), std::string::npos) << inside.jogger().report().reason;
 }
 
 TEST(Jog, SlowsDownWhereTheArmIsStretchedAndComesBack) {

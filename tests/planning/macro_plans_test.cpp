@@ -142,6 +142,25 @@ TEST(PlaceHere, LowersWhatIsHeldOntoThePointUprightAndMissesWhatStandsThere) {
   expectClean(plan, {held, table});
 }
 
+TEST(Zones, AreRefusedToTouchAndSeenByTheIndependentSweep) {
+  const Vector3d p(0.7, 0, 0.5);
+  const auto point = featureOf(FeatureKind::kPoint, {p});
+  const Plan free = planned("touch", point);
+  ASSERT_TRUE(free.ok()) << free.reason;
+  WorldObject zone = tests::boxObject("drill", {0.2, 0.2, 0.2}, p);
+  zone.role = BodyRole::kKeepOut;
+  const Plan refused = planned("touch", point, {}, "home", {zone});
+  EXPECT_FALSE(refused.ok()) << "the marked point is in it, which opens it to nobody";
+  EXPECT_NE(refused.reason.find("drill"), std::string::npos) << refused.reason;
+  EXPECT_FALSE(sweepOf(cell(), free, {zone}, {"drill"}).ok);
+  WorldObject room = tests::boxObject("room", {4, 4, 4}, {0, 0, 0});
+  room.role = BodyRole::kKeepIn;
+  expectClean(planned("touch", point, {}, "home", {room}), {room});
+  room.X_WO.translation().x() = -1.5;    // its front wall stands before the point
+  EXPECT_FALSE(sweepOf(cell(), free, {room}).ok);
+  EXPECT_NE(planned("touch", point, {}, "home", {room}).reason.find("room"), std::string::npos);
+}
+
 TEST(AttachedObjects, AreKeptOutOfObstaclesOnTheWay) {
   const Vector3d p(0.75, 0, 0.45);
   WorldObject rod = tests::boxObject("rod", {0.02, 0.5, 0.02}, Vector3d(0, 0, 0.15 + 0.05));

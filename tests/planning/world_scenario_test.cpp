@@ -42,5 +42,42 @@ TEST(ScenarioRoute, TheBuiltInBoardVisitsEnoughPlaces) {
   EXPECT_FALSE(board->body.collides) << "whoever holds it keeps it out of the arm's way";
 }
 
+const char kStage[] = "format: 1\nname: s\ntitle: t\nobjects:\n"
+    "  - {name: bar, shape: {cylinder: {radius: 0.01, length: 0.2}}, pose: {xyz: [1, 0, 1]}}\n"
+    "  - {name: lid, shape: {box: [0.2, 0.2, 0.02]}, pose: {xyz: [1, 0, 1]}}\n"
+    "mechanisms:\n  - {name: hinge, kind: hinge, moves: [lid], axis: [0, 0, 1], range_deg: [0, 90]}\ntask:\n";
+
+TEST(ScenarioTask, NamesWhatIsMarkedAndWhatIsDoneWithIt) {
+  const auto scenario = parseScenario(std::string(kStage) + "  - {mark: bar, macro: touch, gripper: close}\n"
+      "  - {mark: hinge, macro: move_around_axis, arguments: {angle: 0.5}}\n"
+      "  - {mark: lid, at: [[-1, -1, 1], [1, -1, 1], [1, 1, 1]], macro: press}\n", "s.yaml");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  ASSERT_EQ(scenario->task.size(), 3u);
+  EXPECT_EQ(scenario->task[0].object, "bar");
+  EXPECT_TRUE(scenario->task[0].close_gripper);
+  EXPECT_EQ(scenario->task[1].mechanism, "hinge");
+  EXPECT_DOUBLE_EQ(scenario->task[1].arguments.at("angle"), 0.5);
+  EXPECT_EQ(scenario->task[2].at.size(), 3u);
+}
+
+TEST(ScenarioTask, MistakesAreToldWithTheirPlace) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"  - {mark: bar}\n", "macro"},
+      {"  - {mark: door, macro: touch}\n", "\"door\""},
+      {"  - {mark: lid, macro: touch}\n", "at is missing"},
+      {"  - {mark: hinge, at: [[0, 0, 1]], macro: touch}\n", "its axis is marked"},
+      {"  - {mark: lid, at: [[0, 0, 9]], macro: touch}\n", "outside -2 to 2"},
+      {"  - {mark: lid, at: [[0, 0]], macro: touch}\n", "[x, y, z]"},
+      {"  - {mark: bar, macro: touch, arguments: {gap: far}}\n", "arguments.gap"},
+      {"  - {mark: bar, macro: touch, gripper: open}\n", "expected close"},
+      {"  - {mark: bar, macro: touch, speed: 1}\n", "speed"}};
+  for (const auto& [text, word] : cases) {
+    const auto scenario = parseScenario(std::string(kStage) + text, "s.yaml");
+    ASSERT_FALSE(scenario.ok()) << text;
+    EXPECT_NE(scenario.error().message.find("task[0]"), std::string::npos) << scenario.error().message;
+    EXPECT_NE(scenario.error().message.find(word), std::string::npos) << scenario.error().message;
+  }
+}
+
 }  // namespace
 }  // namespace longarm::planning

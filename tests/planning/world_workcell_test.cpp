@@ -67,6 +67,7 @@ TEST_F(WorkcellTest, ReadsEverySection) {
       "objects:\n  - {name: floor, box: [4, 4, 0.02], pose: {xyz: [0, 0, -0.5], rpy: [0, 0, 1.5]}, rgba: [1, 0, 0, 1]}\n"
       "  - {name: post, cylinder: {radius: 0.1, length: 2}, attached_link: arm, collides: false}\n"
       "  - {name: ball, sphere: {radius: 0.1}, pose: {xyz: [1, 2, 3], quaternion_xyzw: [0, 0, 0, 1]}}\n"
+      "  - {name: drill, sphere: {radius: 0.2}, role: keep_out}\n  - {name: cell, box: [2, 2, 2], role: keep_in}\n"
       "poses: {there: {j: 0.5}}\nspeeds: {max_tool_speed: 0.125, approach_speed: 0.02}\nextra: 1\n");
   std::setlocale(LC_ALL, "C");
   ASSERT_TRUE(cell.ok()) << cell.error().message;
@@ -77,7 +78,10 @@ TEST_F(WorkcellTest, ReadsEverySection) {
   EXPECT_EQ(cell->camera("a")->calibration, (m_folder / "a.yaml").string());
   EXPECT_DOUBLE_EQ(cell->camera("b")->sigma_px, 0.25);
   EXPECT_EQ(cell->backend.topics.at("/joint_states"), "/js");
-  ASSERT_EQ(cell->objects.size(), 3u);
+  ASSERT_EQ(cell->objects.size(), 5u);
+  EXPECT_EQ(cell->objects[0].role, BodyRole::kSolid);
+  EXPECT_EQ(cell->objects[3].role, BodyRole::kKeepOut);
+  EXPECT_EQ(cell->objects[4].role, BodyRole::kKeepIn);
   EXPECT_DOUBLE_EQ(std::get<Box>(cell->objects[0].shape).size.z(), 0.02);
   EXPECT_NEAR(cell->objects[0].X_WO.linear()(1, 0), std::sin(1.5), 1e-12);
   EXPECT_EQ(cell->objects[1].attached_link, "arm");

@@ -261,7 +261,7 @@ class RandomEditor {
     after.size(static_cast<int>(below(3))) = pixel() / 640;
     after.margin_m = pixel() / 6400;
     after.hidden = below(2) == 0;
-    after.obstacle = below(2) == 0;
+    after.role = static_cast<WorldRole>(below(4));
     return replaceWorldItem(document, after);
   }
   CommandPtr both() {

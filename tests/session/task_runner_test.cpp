@@ -47,6 +47,19 @@ TEST_F(TaskRunner, GrabsThePipeOfSeveralSeedsInSimulatedTime) {
   }
 }
 
+class EveryScenario : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(EveryScenario, ItsTaskIsDoneByClicksAlone) {
+  LONGARM_SKIP_WITHOUT_VIRTUAL_ROBOT();
+  TaskOptions options = lockstepTask(1);
+  options.scenario = GetParam();
+  const auto report = runTask(testing::builtInWorkcell(), options);
+  ASSERT_TRUE(report.ok()) << report.error().message;
+  EXPECT_TRUE(report->success) << testing::tableOf(*report);
+}
+INSTANTIATE_TEST_SUITE_P(Scenarios, EveryScenario,
+                         ::testing::Values("open_door", "pull_drawer", "turn_valve", "scan_panel", "package", "crate"));
+
 TEST_F(TaskRunner, GivesTheSameReportForTheSameSeed) {
   const auto first = toJson(run(lockstepTask(5))), second = toJson(run(lockstepTask(5)));
   EXPECT_EQ(first, second);

@@ -136,10 +136,24 @@ TEST(WorldItem, RefusesWhatHasNoBodyAndSaysWhatToMark) {
 TEST(WorldItem, IsAnObstacleOnlyInItsFrameAndNotForTheFeatureItCameFrom) {
   auto items = oneOfEach();
   items[0].source = {7};
-  items[1].obstacle = false;
+  items[1].role = WorldRole::kDrawn;
   EXPECT_EQ(obstaclesOf(items, "base_link", {}).size(), 4U) << "box, pipe, two points";
   EXPECT_EQ(obstaclesOf(items, "base_link", {7}).size(), 3U);
   EXPECT_TRUE(obstaclesOf(items, "elsewhere", {}).empty());
+}
+
+TEST(WorldItem, ZonesHoldForTheFeatureTheyCameFromAndAWorkspaceLosesItsMargin) {
+  auto items = oneOfEach();
+  items[0].source = {7};
+  items[0].role = WorldRole::kKeepOut;
+  EXPECT_EQ(obstaclesOf(items, "base_link", {7}).size(), obstaclesOf(items, "base_link", {}).size());
+  EXPECT_EQ(obstaclesOf(items, "base_link", {7})[0].role, planning::BodyRole::kKeepOut);
+  WorldItem room = workspaceAround({0, 0, 0.4}, 1.2, "base_link");
+  room.margin_m = 0.05;
+  ASSERT_TRUE(checkWorldItem(room));
+  EXPECT_NEAR(std::get<planning::Box>(obstaclesOf({room}, "base_link", {})[0].shape).size.x(), 2.3, 1e-12);
+  room.kind = WorldKind::kPipe;
+  EXPECT_NE(checkWorldItem(room).error().message.find("cannot be a workspace"), std::string::npos);
 }
 
 TEST(WorldItem, IsProjectedOverTheTrueBoxInEveryView) {
@@ -283,7 +297,7 @@ TEST_F(WorldFile, IsKeptInTheSketchWithPinsGroupsAndNotes) {
     EXPECT_EQ(a.kind, b.kind);
     EXPECT_EQ(a.size, b.size);
     EXPECT_EQ(a.points, b.points);
-    EXPECT_EQ(a.obstacle, b.obstacle);
+    EXPECT_EQ(a.role, b.role);
     EXPECT_LT((a.X_WO.matrix() - b.X_WO.matrix()).norm(), 1e-12);
   }
   EXPECT_EQ(loaded->pinned, bench.document.state().pinned);

@@ -1,6 +1,7 @@
 // Panels and dialogs of the sketch: world, library, numbers, notes, third picture.
 #include <algorithm>
 
+#include <QComboBox>
 #include <QFileInfo>
 #include <QInputDialog>
 #include <QListWidget>
@@ -64,9 +65,14 @@ TEST(WorldPanel, ListsEditsAndRemovesWhatWasAddedEachAsOneUndoStep) {
   panel.table()->item(0, WorldPanel::kSizeX)->setText(QStringLiteral("50"));
   EXPECT_DOUBLE_EQ(rig.bench.world().items()[0].size.x(), 0.05);
   panel.table()->item(0, WorldPanel::kMargin)->setText(QStringLiteral("12.5"));
-  panel.table()->item(0, WorldPanel::kObstacle)->setCheckState(Qt::Unchecked);
+  auto* role = qobject_cast<QComboBox*>(panel.table()->cellWidget(0, WorldPanel::kRole));
+  ASSERT_NE(role, nullptr);
+  EXPECT_EQ(role->findText(QStringLiteral("workspace")), -1) << "a point cannot be one";
+  role->setCurrentIndex(role->findText(QStringLiteral("drawn only")));
+  Q_EMIT role->activated(role->currentIndex());
+  QCoreApplication::processEvents();
   EXPECT_DOUBLE_EQ(rig.bench.world().items()[0].margin_m, 0.0125);
-  EXPECT_FALSE(rig.bench.world().items()[0].obstacle);
+  EXPECT_EQ(rig.bench.world().items()[0].role, session::WorldRole::kDrawn);
   panel.table()->item(0, WorldPanel::kSizeX)->setText(QStringLiteral("-3"));
   EXPECT_DOUBLE_EQ(rig.bench.world().items()[0].size.x(), 0.05) << "refused";
   EXPECT_EQ(panel.table()->item(0, WorldPanel::kSizeX)->text(), QStringLiteral("50.0"));
@@ -125,7 +131,7 @@ TEST(SketchedWorld, IsKeptClearOfByPlansWhichGoStaleWhenItChanges) {
   EXPECT_FALSE(rig.bench.plans().checkFresh(*rig.joints)) << "the world is not what the plan was made for";
   const std::string reason = rig.plan(QStringLiteral("ready"));
   EXPECT_NE(reason.find("sketched crate"), std::string::npos) << reason;
-  body.obstacle = false;
+  body.role = session::WorldRole::kDrawn;
   ASSERT_TRUE(rig.bench.world().edit(body));
   EXPECT_EQ(rig.plan(QStringLiteral("ready")), "ok") << "drawn, but planned through";
 }

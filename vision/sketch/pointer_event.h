@@ -41,6 +41,8 @@ enum class OverlayRole { kSketch, kSelected, kHandle, kActiveHandle, kUnplaced, 
                          kRival,        ///< One of several places that look alike.
                          kSolid,        ///< What a box or pipe looks like where it was measured.
                          kWorld,        ///< A body of the sketched world.
+                         kKeepOut,      ///< A zone that the arm does not enter.
+                         kWorkspace,    ///< A zone that it does not leave.
                          kDimension };  ///< A measured distance or angle.
 
 struct OverlayShape {
