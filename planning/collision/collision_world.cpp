@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "core/require.h"
 #include "core/text.h"
@@ -14,13 +16,89 @@ using internal::Body;
 using internal::Pair;
 using internal::PlacedState;
 
+namespace {
+
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+
+bool noneOf(const unsigned char* flags) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, flags, kWord);
+  return word == 0;
+}
+
+}  // namespace
+
 std::string Contact::sentence() const {
   if (distance <= 0) return first + " " + meetingWords(role, second);
   if (role == BodyRole::kKeepIn) return first + " is " + formatFixed(distance * 1000, 1) + " mm from the edge of the workspace " + second;
   return first + " is " + formatFixed(distance * 1000, 1) + " mm from " + second;
 }
 
+namespace {
+
+// Entry of q that drives a joint, and how: v = multiplier q + offset.
+void drivenBy(const RobotModel& model, const Joint& joint, internal::LinkStep& step) {
+  if (joint.mimic_of < 0) {
+    step.q_index = joint.q_index;
+    return;
+  }
+  drivenBy(model, model.joints()[static_cast<std::size_t>(joint.mimic_of)], step);
+  step.multiplier *= joint.mimic_multiplier;
+  step.offset = joint.mimic_multiplier * step.offset + joint.mimic_offset;
+}
+
+internal::LinkStep stepOf(const RobotModel& model, const Joint& joint) {
+  internal::LinkStep step;
+  step.link = joint.child_link;
+  step.parent = joint.parent_link;
+  step.A = joint.X_PJ.linear();
+  step.B.setZero();
+  step.C.setZero();
+  step.p_0 = joint.X_PJ.translation();
+  step.d.setZero();
+  if (joint.type == JointType::kFixed) return step;
+  drivenBy(model, joint, step);
+  if (joint.type == JointType::kPrismatic) {
+    step.d = joint.X_PJ.linear() * joint.axis;
+    return step;
+  }
+  // Rodrigues' formula, the parts that do not depend on the angle multiplied out.
+  const Eigen::Vector3d& n = joint.axis;
+  Eigen::Matrix3d cross;
+  cross << 0, -n.z(), n.y(), n.z(), 0, -n.x(), -n.y(), n.x(), 0;
+  step.turns = true;
+  step.A = joint.X_PJ.linear() * (n * n.transpose());
+  step.B = joint.X_PJ.linear() * cross;
+  step.C = joint.X_PJ.linear() * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  return step;
+}
+
+}  // namespace
+
+void CollisionWorld::Impl::addSteps() {
+  const auto is_moving = [this](int q_index) {
+    return q_index >= 0 && (options.moving.empty() || std::find(options.moving.begin(), options.moving.end(), q_index) != options.moving.end());
+  };
+  for (int i = 0; i < model->dof(); ++i) {
+    if (!is_moving(i)) still.push_back(i);
+  }
+  link_moves.assign(model->links().size(), 0);
+  std::vector<int> open{model->rootLink()};
+  while (!open.empty()) {
+    const int parent = open.back();
+    open.pop_back();
+    for (const auto& joint : model->joints()) {
+      if (joint.parent_link != parent) continue;
+      steps.push_back(stepOf(*model, joint));
+      const bool moves = link_moves[static_cast<std::size_t>(parent)] != 0 || is_moving(steps.back().q_index);
+      link_moves[static_cast<std::size_t>(joint.child_link)] = moves ? 1 : 0;
+      open.push_back(joint.child_link);
+    }
+  }
+}
+
 void CollisionWorld::Impl::addLinkBodies() {
+  addSteps();
   for (std::size_t link = 0; link < model->links().size(); ++link) {
     for (const auto& shape : model->links()[link].collisions) {
       Body body;
@@ -28,11 +106,23 @@ void CollisionWorld::Impl::addLinkBodies() {
       body.link = static_cast<int>(link);
       body.X_LS = shape.X_LS;
       body.geometry = internal::toFcl(shape.shape);
+      body.convex = internal::convexOf(shape.shape);
       body.bounds = boundsOf(shape.shape);
       if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.shape)) body.mesh = *mesh;
-      if (body.geometry) bodies.push_back(std::move(body));
+      keep(std::move(body));
     }
   }
+}
+
+void CollisionWorld::Impl::keep(Body body) {
+  if (!body.geometry) return;
+  const Eigen::Vector3d& half = body.bounds.half;
+  const bool round = body.convex && body.convex->kind == internal::Convex::Kind::kCylinder;
+  body.ball = body.convex && body.convex->kind == internal::Convex::Kind::kPoint ? body.convex->margin
+              : round ? std::hypot(half.x(), half.z()) : half.norm();
+  body.turned = !body.X_LS.linear().isIdentity(0);
+  any_mesh = any_mesh || !body.convex;
+  bodies.push_back(std::move(body));
 }
 
 void CollisionWorld::Impl::addObjects(const std::vector<WorldObject>& objects) {
@@ -49,10 +139,11 @@ void CollisionWorld::Impl::addObject(const WorldObject& object) {
   body.role = object.role;
   body.X_LS = object.X_WO;
   body.geometry = internal::toFcl(object.shape);
+  body.convex = internal::convexOf(object.shape);
   body.bounds = boundsOf(object.shape);
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&object.shape)) body.mesh = *mesh;
   if (!object.attached_link.empty()) body.link = model->linkIndex(object.attached_link).valueOr(-1);
-  if (body.geometry) bodies.push_back(std::move(body));
+  keep(std::move(body));
 }
 
 // Whether an attached object may touch this link: the carrier, its parent and its children.
@@ -93,31 +184,118 @@ void CollisionWorld::Impl::addPairs(const AllowedPairs& allowed) {
         pair.bound.insert(pair.bound.end(), other.begin(), other.end());
       }
       pair.moving = moves(pair.bound);
+      pair.dear = !a.convex || !b.convex;
       pair.zone = a.role != BodyRole::kSolid || b.role != BodyRole::kSolid;
       pairs.push_back(std::move(pair));
     }
   }
 }
 
+// Everything that does not change from one state to the next of a motion is placed once.
 void CollisionWorld::Impl::placeAll(const Eigen::VectorXd& q, PlacedState& state) const {
+  if (state.q.size() == q.size() && state.q == q) return;
   ++counters.states;
-  model->forward(q, state.links);
-  state.poses.resize(bodies.size());
-  state.bounds.resize(bodies.size());
+  const bool known = state.q.size() == q.size() && std::all_of(still.begin(), still.end(), [&](int i) { return state.q[i] == q[i]; });
+  if (!known) {
+    LONGARM_REQUIRE(q.size() == model->dof(), "configuration of the wrong size");
+    state.links.assign(model->links().size(), Pose::Identity());
+    state.poses.resize(bodies.size());
+    state.covers.resize(bodies.size());
+    state.boxes.resize(bodies.size());
+    state.bounds.resize(any_mesh ? bodies.size() : 0);
+  }
+  for (const auto& step : steps) {
+    const bool moves = link_moves[static_cast<std::size_t>(step.link)] != 0;
+    if (known && !moves) continue;
+    const Pose& X_RP = state.links[static_cast<std::size_t>(step.parent)];
+    Pose& X = state.links[static_cast<std::size_t>(step.link)];
+    const double v = step.q_index < 0 ? 0 : step.multiplier * q[step.q_index] + step.offset;
+    if (step.turns) {
+      X.linear().noalias() = X_RP.linear().lazyProduct(step.A + std::sin(v) * step.B + std::cos(v) * step.C);
+    } else {
+      X.linear().noalias() = X_RP.linear().lazyProduct(step.A);
+    }
+    X.translation() = X_RP.translation();
+    X.translation().noalias() += X_RP.linear().lazyProduct(step.p_0 + v * step.d);
+  }
+  if (!known) placeBodies(false, state);
+  placeBodies(true, state);
+  state.q = q;
+}
+
+void CollisionWorld::Impl::placeBodies(bool moving, PlacedState& state) const {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    state.poses[i] = body.link < 0 ? body.X_LS : state.links[static_cast<std::size_t>(body.link)] * body.X_LS;
-    state.bounds[i] = place(body.bounds, state.poses[i]);
+    const bool moves = body.link >= 0 && link_moves[static_cast<std::size_t>(body.link)] != 0;
+    if (moves != moving) continue;
+    Pose& X = state.poses[i];
+    if (body.link < 0) {
+      X = body.X_LS;
+    } else {
+      const Pose& X_RL = state.links[static_cast<std::size_t>(body.link)];
+      if (body.turned) X.linear().noalias() = X_RL.linear().lazyProduct(body.X_LS.linear());
+      else X.linear() = X_RL.linear();
+      X.translation() = X_RL.translation();
+      X.translation().noalias() += X_RL.linear().lazyProduct(body.X_LS.translation());
+    }
+    internal::Cover& cover = state.covers[i];
+    cover.center = X.translation();
+    cover.center.noalias() += X.linear().lazyProduct(body.bounds.center);
+    cover.half.noalias() = X.linear().cwiseAbs().lazyProduct(body.bounds.half);
+    cover.radius = body.ball;
+    state.boxes.set(i, cover.center, cover.half);
+    if (any_mesh) state.bounds[i] = place(body.bounds, X);
   }
 }
 
+const internal::LookedAt& CollisionWorld::Impl::lookedAt() const {
+  if (looked_at_valid) return looked_at;
+  internal::Boxes sized;
+  sized.resize(bodies.size());
+  const std::size_t columns = sized.padded();
+  const auto moves = [this](int body) {
+    const int link = bodies[static_cast<std::size_t>(body)].link;
+    return link >= 0 && link_moves[static_cast<std::size_t>(link)] != 0;
+  };
+  looked_at = {};
+  std::vector<int> row_of(bodies.size(), -1);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!moves(static_cast<int>(i))) continue;
+    row_of[i] = static_cast<int>(looked_at.movers.size());
+    looked_at.movers.push_back(static_cast<int>(i));
+  }
+  looked_at.rows.assign(looked_at.movers.size() * columns, -1);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!active(pairs[i])) continue;
+    looked_at.pairs.push_back(static_cast<int>(i));
+    const bool first = row_of[static_cast<std::size_t>(pairs[i].a)] >= 0;
+    const auto row = static_cast<std::size_t>(row_of[static_cast<std::size_t>(first ? pairs[i].a : pairs[i].b)]);
+    looked_at.rows[row * columns + static_cast<std::size_t>(first ? pairs[i].b : pairs[i].a)] = static_cast<int>(i);
+  }
+  for (const int pair : looked_at.rows) looked_at.asked.push_back(pair >= 0 ? 1 : 0);
+  looked_at.reach.setZero(static_cast<Eigen::Index>(looked_at.pairs.size()), model->dof());
+  for (std::size_t i = 0; i < looked_at.pairs.size(); ++i) {
+    const Pair& pair = pairs[static_cast<std::size_t>(looked_at.pairs[i])];
+    looked_at.dear.push_back(pair.dear ? 1 : 0);
+    looked_at.self.push_back(pair.self ? 1 : 0);
+    for (const auto& [index, reach] : pair.bound) looked_at.reach(static_cast<Eigen::Index>(i), index) += reach;
+  }
+  looked_at_valid = true;
+  return looked_at;
+}
+
 double CollisionWorld::Impl::bound(const Pair& pair, const PlacedState& state) const {
-  return distanceBound(state.bounds[static_cast<std::size_t>(pair.a)], state.bounds[static_cast<std::size_t>(pair.b)]);
+  const double low = coverBound(pair.a, pair.b, state);
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  return pair.dear ? std::max(low, distanceBound(state.bounds[a], state.bounds[b])) : low;
 }
 
 double CollisionWorld::Impl::distance(const Pair& pair, const PlacedState& state, double cap) const {
   ++counters.queries;
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  if (bodies[a].convex && bodies[b].convex) {
+    if (const auto d = internal::convexDistance(*bodies[a].convex, state.poses[a], *bodies[b].convex, state.poses[b], cap, &pair.axis)) return *d;
+  }
   const double d = internal::fclDistance(*bodies[a].geometry, state.poses[a], *bodies[b].geometry, state.poses[b], cap);
   if (d <= 0 || (!bodies[a].mesh && !bodies[b].mesh) || bound(pair, state) > 0) return d;
   // Surfaces do not meet, yet one may lie wholly inside the other.
@@ -127,6 +305,25 @@ double CollisionWorld::Impl::distance(const Pair& pair, const PlacedState& state
     return insideMesh(*bodies[outer].mesh, state.poses[outer].inverse() * (state.poses[inner] * p));
   };
   return holds(a, b) || holds(b, a) ? 0 : d;
+}
+
+double CollisionWorld::Impl::clearance(const Pair& pair, const PlacedState& state, double cap) const {
+  const Body &a = bodies[static_cast<std::size_t>(pair.a)], &b = bodies[static_cast<std::size_t>(pair.b)];
+  if (a.convex && b.convex) {
+    ++counters.queries;
+    const Pose &X_A = state.poses[static_cast<std::size_t>(pair.a)], &X_B = state.poses[static_cast<std::size_t>(pair.b)];
+    if (const auto d = internal::convexClearance(*a.convex, X_A, *b.convex, X_B, cap, padding(pair), &pair.axis)) return *d;
+  }
+  return distance(pair, state, cap);
+}
+
+bool CollisionWorld::Impl::within(const Pair& pair, const PlacedState& state, double limit) const {
+  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  if (bodies[a].convex && bodies[b].convex) {
+    ++counters.queries;
+    if (const auto is = internal::convexWithin(*bodies[a].convex, state.poses[a], *bodies[b].convex, state.poses[b], limit)) return *is;
+  }
+  return distance(pair, state, limit + 1e-3) <= limit;
 }
 
 double CollisionWorld::Impl::leastDistance(const PlacedState& state, bool self, bool world, double cap,
@@ -189,18 +386,32 @@ void CollisionWorld::allow(const std::string& object, const std::vector<std::str
     const Body& b = m_impl->bodies[static_cast<std::size_t>(pair.b)];
     if (!pair.zone && (matches(a, b) || matches(b, a))) pair.allowed = true;
   }
+  m_impl->looked_at_valid = false;
 }
 
 bool CollisionWorld::inCollision(const Eigen::VectorXd& q, Contact* contact) const {
-  m_impl->placeAll(q, m_impl->scratch);
-  for (const auto& pair : m_impl->pairs) {
-    if (!m_impl->active(pair)) continue;
-    const double padding = m_impl->padding(pair);
-    if (m_impl->bound(pair, m_impl->scratch) > padding) continue;
-    const double d = m_impl->distance(pair, m_impl->scratch, padding + 1e-3);
-    if (d > padding) continue;
-    m_impl->report(pair, d, contact);
-    return true;
+  Impl& impl = *m_impl;
+  PlacedState& state = impl.scratch;
+  impl.placeAll(q, state);
+  const internal::LookedAt& look = impl.lookedAt();
+  const std::size_t columns = state.boxes.padded();
+  impl.near.resize(columns);
+  const double widest = std::max(impl.options.padding, impl.options.self_padding);
+  for (std::size_t row = look.movers.size(); row-- > 0;) {      // what is far out touches first
+    internal::nearBoxes(state.boxes, static_cast<std::size_t>(look.movers[row]), widest, &look.asked[row * columns],
+                        impl.near.data());
+    for (std::size_t other = 0; other < columns; ++other) {
+      if (other % kWord == 0) {
+        while (other < columns && noneOf(&impl.near[other])) other += kWord;   // most are far
+        if (other >= columns) break;
+      }
+      if (impl.near[other] == 0) continue;
+      const Pair& pair = impl.pairs[static_cast<std::size_t>(look.rows[row * columns + other])];
+      const double limit = impl.padding(pair);
+      if ((pair.dear && impl.bound(pair, state) > limit) || !impl.within(pair, state, limit)) continue;
+      if (contact != nullptr) impl.report(pair, impl.distance(pair, state, limit + 1e-3), contact);
+      return true;
+    }
   }
   return false;
 }
@@ -209,7 +420,7 @@ bool CollisionWorld::Impl::anyTouches(const Eigen::VectorXd& q, bool zones_only,
   placeAll(q, scratch);
   for (const auto& pair : pairs) {
     if (pair.zone ? !pair.moving : (pair.allowed || zones_only)) continue;
-    if (bound(pair, scratch) > 0 || distance(pair, scratch, 1e-3) > 0) continue;
+    if (bound(pair, scratch) > 0 || !within(pair, scratch, 0)) continue;
     report(pair, 0, contact);
     return true;
   }
@@ -228,10 +439,6 @@ std::pair<double, double> CollisionWorld::clearances(const Eigen::VectorXd& q, d
   m_impl->placeAll(q, m_impl->scratch);
   return {m_impl->leastDistance(m_impl->scratch, false, true, cap, nullptr),
           m_impl->leastDistance(m_impl->scratch, true, false, cap, nullptr)};
-}
-
-bool CollisionWorld::segmentFree(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Contact* contact) const {
-  return m_impl->segmentFree(a, b, contact);
 }
 
 std::vector<int> movingIndices(const RobotModel& model, const JointGroup& group) {

@@ -9,6 +9,7 @@ ArmSpace::ArmSpace(const Workcell& workcell, CollisionWorld& world, Eigen::Vecto
     : m_workcell(&workcell),
       m_world(&world),
       m_q(std::move(q)),
+      m_scratch(m_q),
       m_lower(workcell.arm_limits.lower.cwiseMax(-2 * M_PI)),
       m_upper(workcell.arm_limits.upper.cwiseMin(2 * M_PI)),
       m_tip(workcell.model->linkIndex(workcell.arm.tip_link).valueOr(workcell.model->rootLink())) {}
@@ -26,7 +27,8 @@ bool ArmSpace::withinLimits(const Eigen::VectorXd& arm, double tolerance) const 
 }
 
 bool ArmSpace::valid(const Eigen::VectorXd& arm, Contact* contact) const {
-  return !m_world->inCollision(full(arm), contact);
+  setGroupPositions(model(), group(), arm, m_scratch);
+  return !m_world->inCollision(m_scratch, contact);
 }
 
 bool ArmSpace::segmentFree(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Contact* contact) const {

@@ -35,7 +35,9 @@ class ArmSpace {
  private:
   const Workcell* m_workcell;
   CollisionWorld* m_world;
-  Eigen::VectorXd m_q, m_lower, m_upper;
+  Eigen::VectorXd m_q;
+  mutable Eigen::VectorXd m_scratch;       // a full configuration, to save allocating one for every check
+  Eigen::VectorXd m_lower, m_upper;
   int m_tip = 0;
 };
 

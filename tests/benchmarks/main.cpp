@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
 #ifdef LONGARM_WITH_KDL
   for (auto& contest : robotContests()) contests.push_back(std::move(contest));
 #else
-  for (const char* name : {"fk_jacobian", "ik", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
+  for (const char* name : {"fk_jacobian", "ik", "ik_seven_joints", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
 #endif
   for (auto& contest : motionContests()) contests.push_back(std::move(contest));
   for (auto& contest : paneContests(&skipped)) contests.push_back(std::move(contest));

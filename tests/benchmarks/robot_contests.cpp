@@ -1,4 +1,4 @@
-// Kinematics against KDL, on the built-in arm.
+// Kinematics against KDL, on the built-in arm and on one of seven joints.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,6 +12,7 @@
 #include <kdl/chainiksolvervel_pinv.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
+#include "core/resource_path.h"
 #include "core/text.h"
 #include "planning/robot/ik.h"
 #include "planning/world/workcell.h"
@@ -56,9 +57,9 @@ KDL::JntArray arrayOf(const VectorXd& q) {
   return out;
 }
 
-// The arm of the built-in robot for both sides; joints outside of it stand at neutral.
+// One arm for both sides; joints outside of it stand at neutral.
 struct Arm {
-  Arm() : cell(planning::loadBuiltInWorkcell().value()), solver(cell.model, cell.arm), lower(cell.arm_limits.lower),
+  explicit Arm(planning::Workcell of) : cell(std::move(of)), solver(cell.model, cell.arm), lower(cell.arm_limits.lower),
           upper(cell.arm_limits.upper), random(7) {
     solver.setLimits(lower, upper);
     buildChain();
@@ -212,8 +213,8 @@ Accuracy ikAccuracy(Arm& arm) {
                                     " % of 500; limit 100 %)"};
 }
 
-Contest ikContest(const std::shared_ptr<Arm>& arm, const std::shared_ptr<Queries>& queries) {
-  Contest contest{"ik", "KDL ChainIkSolverPos_LMA, 20 random restarts within limits", {}, {}, 4, 10, false, {}};
+Contest ikContest(const std::string& name, const std::shared_ptr<Arm>& arm, const std::shared_ptr<Queries>& queries) {
+  Contest contest{name, "KDL ChainIkSolverPos_LMA, 20 random restarts within limits", {}, {}, 4, 10, false, {}};
   contest.ours = [arm, queries] {
     for (std::size_t i = 0; i < queries->goals.size(); ++i) {
       benchmark::DoNotOptimize(arm->solver.solve(queries->goals[i], queries->seeds[i], thorough()).ok());
@@ -288,9 +289,11 @@ Contest cartesianContest(const std::shared_ptr<Arm>& arm) {
 }  // namespace
 
 std::vector<Contest> robotContests() {
-  const auto arm = std::make_shared<Arm>();
+  const auto arm = std::make_shared<Arm>(planning::loadBuiltInWorkcell().value());
   const auto queries = std::make_shared<Queries>(*arm);
-  return {kinematicsContest(arm, queries), ikContest(arm, queries), cartesianContest(arm)};
+  const auto seven = std::make_shared<Arm>(planning::loadWorkcell(resourcePath("robots/seven_joints/workcell.yaml").value()).value());
+  return {kinematicsContest(arm, queries), ikContest("ik", arm, queries), ikContest("ik_seven_joints", seven, std::make_shared<Queries>(*seven)),
+          cartesianContest(arm)};
 }
 
 }  // namespace longarm::benchmarks
