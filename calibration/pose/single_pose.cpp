@@ -28,45 +28,52 @@ double cauchy(double squares, double threshold, double* weight) {
   return c2 * std::log1p(squares / c2);
 }
 
-double costOf(const vision::CameraModel& camera, const std::vector<PoseObservation>& observations, const Pose& T,
-              double threshold) {
-  double cost = 0;
-  for (const auto& o : observations) {
-    if (o.weight <= 0) continue;
-    Eigen::Vector2d pixel;
-    if (!projectPoint(camera, o.A * (T * o.y), &pixel)) return kInfinity;
-    double robust = 1;
-    cost += o.weight * cauchy((o.pixel - pixel).squaredNorm(), threshold, &robust);
-  }
-  return cost;
-}
-
 struct Equations {
-  Matrix6d H = Matrix6d::Zero();
+  Matrix6d H = Matrix6d::Zero();           // lower half while it is summed up
   Vector6d g = Vector6d::Zero();
   double cost = 0;
 };
 
+// Adds w row row^T and w r row.
+void addRow(const double* row, double w, double r, double* H, double* g) {
+  int at = 0;
+  for (int i = 0; i < 6; ++i) {
+    const double wi = w * row[i];
+    for (int j = 0; j <= i; ++j) H[at++] += wi * row[j];
+    g[i] += wi * r;
+  }
+}
+
 Equations equationsOf(const vision::CameraModel& camera, const std::vector<PoseObservation>& observations,
                       const Pose& T, double threshold) {
   Equations e;
-  LensProjection at;
-  Eigen::Matrix<double, 2, 6> J;
+  double H[21] = {}, g[6] = {};
+  Eigen::Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> d_point;
+  const Eigen::Matrix3d R = T.linear();
+  const Eigen::Vector3d t = T.translation();
   for (const auto& o : observations) {
     if (o.weight <= 0) continue;
-    const Eigen::Vector3d turned = T.linear() * o.y;
-    if (!projectWithDerivatives(camera, o.A * (turned + T.translation()), &at)) {
+    const Eigen::Vector3d turned = R * o.y;
+    if (!projectWithPointDerivative(camera, o.A.linear() * (turned + t) + o.A.translation(), &pixel, &d_point)) {
       e.cost = kInfinity;
       return e;
     }
-    const Eigen::Vector2d r = o.pixel - at.pixel;
+    const Eigen::Vector2d r = o.pixel - pixel;
     double robust = 1;
     e.cost += o.weight * cauchy(r.squaredNorm(), threshold, &robust);
-    const double w = o.weight * robust;
-    J.rightCols<3>().noalias() = at.d_point * o.A.linear();
-    J.leftCols<3>().noalias() = -J.rightCols<3>() * skew(turned);
-    e.H.noalias() += w * J.transpose() * J;
-    e.g.noalias() += w * J.transpose() * r;
+    const Eigen::Matrix<double, 2, 3> M = d_point * o.A.linear();
+    for (int k = 0; k < 2; ++k) {
+      const double m0 = M(k, 0), m1 = M(k, 1), m2 = M(k, 2);
+      // -m [turned]x, then m
+      const double row[6] = {turned.y() * m2 - turned.z() * m1, turned.z() * m0 - turned.x() * m2, turned.x() * m1 - turned.y() * m0, m0, m1, m2};
+      addRow(row, o.weight * robust, r[k], H, g);
+    }
+  }
+  int at = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) e.H(i, j) = e.H(j, i) = H[at++];
+    e.g[i] = g[i];
   }
   return e;
 }
@@ -170,11 +177,11 @@ PoseFit refinePose(const vision::CameraModel& camera, const std::vector<PoseObse
     const double promise = step.dot(e.g);
     if (!(promise > 1e-13 * fit.cost + 1e-22)) break;
     const Pose T = moved(fit.T, step);
-    const double cost = costOf(camera, observations, T, cauchy_px);
-    if (cost <= fit.cost) {
+    const Equations there = equationsOf(camera, observations, T, cauchy_px);
+    if (there.cost <= fit.cost) {
       fit.T = T;
       ++fit.iterations;
-      e = equationsOf(camera, observations, T, cauchy_px);
+      e = there;
       fit.cost = e.cost;
       damping = damping < 1e-8 ? 0 : 0.1 * damping;
     } else {

@@ -72,6 +72,18 @@ bool projectWithDerivatives(const vision::CameraModel& c, const Eigen::Vector3d&
   return true;
 }
 
+bool projectWithPointDerivative(const vision::CameraModel& c, const Eigen::Vector3d& p, Eigen::Vector2d* pixel,
+                                Eigen::Matrix<double, 2, 3>* d_point) {
+  if (!(p.z() > kNearest)) return false;
+  const double iz = 1 / p.z(), x = p.x() * iz, y = p.y() * iz;
+  const auto at = vision::internal::distortWithDerivative(c.distortion, x, y);
+  *pixel = {c.fx * at.x + c.skew * at.y + c.cx, c.fy * at.y + c.cy};
+  const Eigen::Matrix2d by_normalised = vision::internal::pixelByNormalised(c, at);
+  d_point->leftCols<2>() = by_normalised * iz;
+  d_point->col(2) = -by_normalised * Eigen::Vector2d(x * iz, y * iz);
+  return true;
+}
+
 bool projectPoint(const vision::CameraModel& c, const Eigen::Vector3d& p, Eigen::Vector2d* pixel) {
   if (!(p.z() > kNearest)) return false;
   *pixel = c.pixelOfNormalised(p.head<2>() / p.z());

@@ -47,6 +47,9 @@ struct LensProjection {
 /// Projects without looking at the range of the lens, so that an estimate may pass through odd values.
 /// @returns false when the point is not in front of the camera.
 bool projectWithDerivatives(const vision::CameraModel& camera, const Eigen::Vector3d& p_C, LensProjection* out);
+/// Pixel and derivative by the point alone.
+bool projectWithPointDerivative(const vision::CameraModel& camera, const Eigen::Vector3d& p_C, Eigen::Vector2d* pixel,
+                                Eigen::Matrix<double, 2, 3>* d_point);
 /// Pixel only.
 bool projectPoint(const vision::CameraModel& camera, const Eigen::Vector3d& p_C, Eigen::Vector2d* pixel);
 
