@@ -4,6 +4,7 @@
 #include <ctime>
 #include <iomanip>
 #include <ostream>
+#include <tuple>
 
 #include <benchmark/benchmark.h>
 #include <nlohmann/json.hpp>
@@ -67,6 +68,7 @@ Latency latencyOf(std::vector<double> wall_s, std::vector<double> work_s) {
 std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repetitions) {
   benchmark::ClearRegisteredBenchmarks();
   for (const auto& contest : contests) {
+    if (contest.figures) continue;
     add(contest.name + ":ours", contest.ours, contest, repetitions);
     add(contest.name + ":peer", contest.theirs, contest, repetitions);
   }
@@ -80,7 +82,11 @@ std::vector<Outcome> runContests(const std::vector<Contest>& contests, int repet
       return found == times.end() ? 0 : median(found->second);
     };
     Outcome outcome{contest.name, contest.peer, secondsOf(":ours"), secondsOf(":peer"), 0, contest.gate,
-                    contest.moonshot, contest.accuracy ? contest.accuracy() : Accuracy{true, ""}, false};
+                    contest.moonshot, contest.accuracy ? contest.accuracy() : Accuracy{true, ""}, false, {}};
+    if (contest.figures) {
+      std::tie(outcome.ours_s, outcome.peer_s) = contest.figures();
+      outcome.unit = contest.unit.empty() ? " " : contest.unit;
+    }
     if (outcome.ours_s > 0) outcome.ratio = outcome.peer_s / outcome.ours_s;
     outcome.passed = outcome.ratio >= outcome.gate && outcome.accuracy.holds;
     outcomes.push_back(outcome);
@@ -100,11 +106,19 @@ Outcome runBudget(const Budget& budget) {
   return outcome;
 }
 
+namespace {
+
+std::string amount(const Outcome& outcome, double value) {
+  return outcome.unit.empty() ? seconds(value) : formatFixed(value, 2) + " " + outcome.unit;
+}
+
+}  // namespace
+
 void printTable(const std::vector<Outcome>& outcomes, std::ostream& out) {
   out << std::left << std::setw(16) << "name" << std::setw(12) << "ours" << std::setw(12) << "peer" << std::setw(9)
       << "ratio" << std::setw(8) << "gate" << std::setw(10) << "moonshot" << std::setw(8) << "" << "accuracy\n";
   for (const auto& o : outcomes) {
-    out << std::setw(16) << o.name << std::setw(12) << seconds(o.ours_s) << std::setw(12) << seconds(o.peer_s)
+    out << std::setw(16) << o.name << std::setw(12) << amount(o, o.ours_s) << std::setw(12) << amount(o, o.peer_s)
         << std::setw(9) << formatFixed(o.ratio, 1) << std::setw(8) << formatNumber(o.gate) << std::setw(10)
         << formatNumber(o.moonshot) << std::setw(8) << (o.passed ? "passed" : "FAILED") << o.accuracy.text << "; peer: "
         << o.peer << "\n";

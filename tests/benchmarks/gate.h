@@ -7,6 +7,7 @@
 #include <iosfwd>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace longarm::benchmarks {
@@ -25,6 +26,9 @@ struct Contest {
   double moonshot = 1;                 ///< What is aimed at.
   bool real_time = false;              ///< Drawing: wall time counts, not the processor's.
   std::function<Accuracy()> accuracy;
+  /// Ours and theirs where not time but a figure of `unit` is compared, the smaller the better; `ours` and `theirs` are empty.
+  std::function<std::pair<double, double>()> figures = {};
+  std::string unit = {};
 };
 
 /// Ninety-fifth percentile and median of a latency [s].
@@ -45,6 +49,7 @@ struct Outcome {
   double ours_s = 0, peer_s = 0, ratio = 0, gate = 0, moonshot = 0;   ///< peer_s is the limit for a budget.
   Accuracy accuracy;
   bool passed = false;
+  std::string unit = {};               ///< Of ours_s and peer_s where they are no seconds.
 };
 
 /// Medians of `repetitions` interleaved runs by Google Benchmark.
@@ -68,6 +73,8 @@ std::vector<Contest> robotContests();
 #endif
 std::vector<Contest> motionContests();
 std::vector<Budget> stereoBudgets();
+std::vector<Contest> calibrationContests(std::map<std::string, std::string>* skipped);
+std::vector<Contest> poseContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);
 
