@@ -25,6 +25,8 @@ class Tiles {
 
   void mark(const QRectF& box) {
     const QRectF area(0, 0, m_columns * kTile, m_rows * kTile);
+    // Something drawn at no number at all is nowhere.
+    if (!std::isfinite(box.left() + box.top() + box.right() + box.bottom())) return;
     const QRectF inside = box.intersected(area);
     if (inside.isEmpty()) return;
     const int right = std::min(m_columns - 1, static_cast<int>(inside.right()) / kTile);

@@ -178,5 +178,20 @@ TEST(CanvasRepaint, LeavesAloneWhatStaysTheSame) {
   EXPECT_EQ(screen.stale(), 0);
 }
 
+TEST(CanvasRepaint, WhatIsDrawnAtNoNumberIsNowhere) {
+  Shown shown;
+  Screen screen(shown.canvas);
+  const double none = std::nan(""), far = 1e300;
+  Overlay broken;
+  for (const auto kind : {OverlayShape::Kind::kMarker, OverlayShape::Kind::kPolyline}) {
+    broken.shapes.push_back({kind, OverlayRole::kHandle, {{none, 10}, {20, none}}, {}});
+    broken.shapes.push_back({kind, OverlayRole::kHandle, {{far, -far}, {-far, far}}, {}});
+  }
+  broken.shapes.push_back({OverlayShape::Kind::kText, OverlayRole::kLabel, {{none, none}}, "nowhere"});
+  shown.canvas.setOverlay(broken);
+  screen.settle();
+  EXPECT_EQ(screen.stale(), 0);
+}
+
 }  // namespace
 }  // namespace longarm::widgets
