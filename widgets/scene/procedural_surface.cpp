@@ -95,7 +95,8 @@ cv::Vec3d noise(double x, double y) { return grey(120 + 130 * fractal(x, y, 12, 
 // 10 x 7 squares with a white rim of one square: 40 pixels each, so that edges lie between pixels.
 cv::Vec3d chessboard(double x, double y) {
   constexpr int kSquare = 40;
-  const int column = static_cast<int>(x * kSize) / kSquare - 1, row = static_cast<int>(y * kSize) / kSquare - 1;
+  // A face's texture begins at the bottom of the picture.
+  const int column = static_cast<int>(x * kSize) / kSquare - 1, row = static_cast<int>((1 - y) * kSize) / kSquare - 1;
   const bool inside = column >= 0 && column < 10 && row >= 0 && row < 7;
   return grey(inside && (column + row) % 2 == 0 ? 25 : 235);
 }
