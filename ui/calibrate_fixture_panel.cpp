@@ -86,7 +86,7 @@ void CalibrateFixturePanel::bind() {
                 [this](const QStringList& files) { model().openPicture(files.front()); });
   });
   connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, [this] {
-    m_bench.live().setWatched(m_camera->currentData().toString());
+    m_bench.live().setWatched({m_camera->currentData().toString()});
     refreshTarget();
   });
   connect(m_take, &QPushButton::clicked, this, [this] {
@@ -138,7 +138,7 @@ QString CalibrateFixturePanel::result() const { return m_result->text(); }
 void CalibrateFixturePanel::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   fillCameras(m_camera, m_bench.document().workcell().get());
-  m_bench.live().setWatched(m_camera->currentData().toString());
+  m_bench.live().setWatched({m_camera->currentData().toString()});
   refresh();
 }
 

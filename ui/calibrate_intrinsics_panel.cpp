@@ -4,7 +4,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QHBoxLayout>
@@ -21,7 +20,6 @@
 
 namespace longarm::ui {
 
-using calibration::BoardKind;
 using session::AutoCapture;
 using vision::OverlayRole;
 
@@ -68,28 +66,10 @@ QWidget* CalibrateIntrinsicsPanel::buildPicture(Appearance& appearance) {
 QWidget* CalibrateIntrinsicsPanel::buildBoardStep() {
   auto* page = new QWidget(this);
   auto* column = new QVBoxLayout(page);
-  auto* form = new QFormLayout;
-  m_kind = new QComboBox(page);
-  m_kind->addItems({tr("Chessboard"), tr("ChArUco"), tr("Grid of circles")});
-  m_columns = countBox(page, 9);
-  m_rows = countBox(page, 6);
-  auto* size = new QHBoxLayout;
-  size->addWidget(m_columns, 1);
-  size->addWidget(new QLabel(QStringLiteral("\u00d7"), page));
-  size->addWidget(m_rows, 1);
-  m_square = lengthBox(page, 25, 0.1);
-  m_marker = lengthBox(page, 0, 0);
-  m_marker->setSpecialValueText(tr("3/4 of a square"));
-  form->addRow(tr("Board"), m_kind);
-  form->addRow(tr("Inner corners"), size);
-  form->addRow(tr("Square"), m_square);
-  form->addRow(tr("Marker"), m_marker);
+  m_board = new BoardForm(page);
   m_source = new QComboBox(page);
-  form->addRow(tr("Pictures from"), m_source);
-  column->addLayout(form);
-  m_columns->setToolTip(tr("Corners where four squares meet: a board of 10 x 7 squares has 9 x 6"));
-  m_rows->setToolTip(m_columns->toolTip());
-  m_square->setToolTip(tr("Side of a square, or distance of two circles. A wrong length makes every distance wrong in proportion."));
+  m_board->form()->addRow(tr("Pictures from"), m_source);
+  column->addWidget(m_board);
   m_source->setToolTip(tr("Files, or a camera that is looked through live"));
   m_auto = new QCheckBox(tr("Keep by itself when still and sharp"), page);
   m_auto->setChecked(true);
@@ -169,9 +149,8 @@ QWidget* CalibrateIntrinsicsPanel::buildBars() {
 }
 
 void CalibrateIntrinsicsPanel::bind() {
-  for (auto* box : {m_columns, m_rows}) connect(box, qOverload<int>(&QSpinBox::valueChanged), this, &CalibrateIntrinsicsPanel::takeBoard);
-  for (auto* box : {m_square, m_marker}) connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &CalibrateIntrinsicsPanel::takeBoard);
-  connect(m_kind, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateIntrinsicsPanel::takeBoard);
+  connect(m_board, &BoardForm::boardChanged, this, [this] { model().setBoard(m_board->board()); });
+  connect(m_board, &BoardForm::refused, &m_bench, &Workbench::said);
   connect(m_source, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateIntrinsicsPanel::chooseSource);
   connect(m_target, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateIntrinsicsPanel::refreshTarget);
   connect(m_show, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateIntrinsicsPanel::refreshPicture);
@@ -210,30 +189,7 @@ void CalibrateIntrinsicsPanel::bind() {
 
 QString CalibrateIntrinsicsPanel::advice() const { return m_advice->text(); }
 
-void CalibrateIntrinsicsPanel::setBoard(const calibration::BoardSpec& board) {
-  m_filling = true;
-  m_kind->setCurrentIndex(static_cast<int>(board.kind));
-  m_columns->setValue(board.columns);
-  m_rows->setValue(board.rows);
-  m_square->setValue(1000 * board.square);
-  m_marker->setValue(1000 * board.marker);
-  m_filling = false;
-  takeBoard();
-}
-
-void CalibrateIntrinsicsPanel::takeBoard() {
-  const bool charuco = m_kind->currentIndex() == static_cast<int>(BoardKind::kCharuco);
-  setWhyNot(m_marker, charuco ? QString() : tr("only ChArUco boards have markers."), tr("Side of a marker; left at zero: three quarters of a square"));
-  if (m_filling) return;
-  calibration::BoardSpec board;
-  board.kind = static_cast<BoardKind>(m_kind->currentIndex());
-  board.columns = m_columns->value();
-  board.rows = m_rows->value();
-  board.square = m_square->value() / 1000;
-  board.marker = charuco ? m_marker->value() / 1000 : 0;
-  if (board.marker >= board.square) return m_bench.say(tr("A marker must be smaller than its square."));
-  model().setBoard(board);
-}
+void CalibrateIntrinsicsPanel::setBoard(const calibration::BoardSpec& board) { m_board->setBoard(board); }
 
 void CalibrateIntrinsicsPanel::takeLens() {
   calibration::LensChoice lens;
@@ -258,7 +214,7 @@ void CalibrateIntrinsicsPanel::hideEvent(QHideEvent* event) {
 void CalibrateIntrinsicsPanel::chooseSource() {
   const QString camera = m_source->currentData().toString();
   m_live = !camera.isEmpty();
-  m_bench.live().setWatched(camera);
+  m_bench.live().setWatched(m_live ? QStringList{camera} : QStringList());
   if (m_live) m_target->setCurrentIndex(std::max(0, m_target->findData(camera)));
   model().leaveLive();
   refresh();
@@ -299,10 +255,7 @@ void CalibrateIntrinsicsPanel::refreshViews() {
   m_views->setRowCount(static_cast<int>(pictures.size()));
   for (int row = 0; row < m_views->rowCount(); ++row) {
     const auto& picture = pictures[static_cast<std::size_t>(row)];
-    setCell(m_views, row, 0, {});
-    auto* use = m_views->item(row, 0);
-    use->setFlags(picture.view ? Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable : Qt::ItemIsEnabled | Qt::ItemIsSelectable);
-    use->setCheckState(picture.view && picture.included ? Qt::Checked : Qt::Unchecked);
+    setTick(m_views, row, 0, picture.view.has_value(), picture.included);
     setCell(m_views, row, 1, QFileInfo(QString::fromStdString(picture.name)).fileName());
     QString rms = QStringLiteral("-"), why = QString::fromStdString(picture.why);
     if (picture.view && !picture.included) why = tr("left out by you");

@@ -6,17 +6,16 @@
 #include <QWidget>
 
 #include "ui/appearance.h"
+#include "ui/board_form.h"
 #include "ui/workbench.h"
 #include "widgets/hold_button.h"
 #include "widgets/image_canvas.h"
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QProgressBar;
 class QPushButton;
-class QSpinBox;
 class QTableWidget;
 class QTabWidget;
 
@@ -53,7 +52,6 @@ class CalibrateIntrinsicsPanel final : public QWidget {
   QWidget* buildResultStep(Appearance& appearance);
   QWidget* buildBars();
   void bind();
-  void takeBoard();
   void takeLens();
   void chooseSource();
   void offerLive(const QString& camera);
@@ -75,9 +73,8 @@ class CalibrateIntrinsicsPanel final : public QWidget {
   Workbench& m_bench;
   widgets::ImageCanvas* m_canvas;
   QTabWidget* m_steps;
-  QComboBox *m_show, *m_kind, *m_source, *m_target, *m_distortion, *m_skew;
-  QSpinBox *m_columns, *m_rows;
-  QDoubleSpinBox *m_square, *m_marker;
+  QComboBox *m_show, *m_source, *m_target, *m_distortion, *m_skew;
+  BoardForm* m_board;
   QCheckBox* m_auto;
   QPushButton *m_add, *m_capture, *m_clear, *m_remove, *m_save;
   widgets::HoldButton* m_apply;

@@ -106,7 +106,7 @@ QWidget* CalibrateLensPanel::buildSide(Appearance& appearance) {
 void CalibrateLensPanel::bind() {
   connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, [this] {
     model().setCamera(m_camera->currentData().toString());
-    m_bench.live().setWatched(m_camera->currentData().toString());
+    m_bench.live().setWatched({m_camera->currentData().toString()});
   });
   connect(m_take, &QPushButton::clicked, this, [this] { model().setPicture(m_bench.live().picture(m_camera->currentData().toString()).clone()); });
   connect(m_open, &QPushButton::clicked, this, [this] {
@@ -150,7 +150,7 @@ void CalibrateLensPanel::showEvent(QShowEvent* event) {
   fillCameras(m_camera, m_bench.document().workcell().get());
   const QString camera = m_camera->currentData().toString();
   if (camera.toStdString() != model().camera()) model().setCamera(camera);
-  m_bench.live().setWatched(camera);
+  m_bench.live().setWatched({camera});
   refresh();
 }
 

@@ -14,6 +14,7 @@
 #include <QVBoxLayout>
 
 #include "calibration/intrinsics/compare_cameras.h"
+#include "core/clock.h"
 #include "ui/calibrate_parts.h"
 
 namespace longarm::ui {
@@ -53,10 +54,10 @@ CalibrateLibraryPanel::CalibrateLibraryPanel(Workbench& bench, Appearance& appea
 
 QWidget* CalibrateLibraryPanel::buildTables(Appearance& appearance) {
   const auto [frame, column] = framedColumn(this);
-  auto* head = new QLabel(tr("Cameras"), frame);
+  auto* head = new QLabel(tr("Cameras, pan-tilts, objects"), frame);
   head->setObjectName(QStringLiteral("title"));
   column->addWidget(head);
-  m_cameras = plainTable({tr("Camera"), tr("In use"), tr("Age"), tr("Rays \u00b1 px"), tr("Off px"), tr("Health")}, frame);
+  m_cameras = plainTable({tr("Name"), tr("In use"), tr("Age"), tr("Rays \u00b1 px"), tr("Off px"), tr("Health")}, frame);
   column->addWidget(m_cameras, 1);
   m_health = wordLabel(frame);
   m_health->setMinimumHeight(34);
@@ -66,15 +67,17 @@ QWidget* CalibrateLibraryPanel::buildTables(Appearance& appearance) {
   line->addWidget(m_repose);
   line->addStretch(1);
   column->addLayout(line);
-  auto* title = new QLabel(tr("Calibrations of this camera"), frame);
+  auto* title = new QLabel(tr("Calibrations of it"), frame);
   title->setObjectName(QStringLiteral("title"));
   column->addWidget(title);
   m_records = plainTable({tr("Made"), tr("Kind"), tr("Points"), tr("rms px"), tr("Rays \u00b1 px"), tr("Note")}, frame);
   column->addWidget(m_records, 1);
   auto* row = new QHBoxLayout;
   m_use = holdButton(tr("Hold to use this one"), appearance, frame);
+  m_again = new QPushButton(tr("Solve again"), frame);
   m_export = new QPushButton(tr("Export..."), frame);
   row->addWidget(m_use);
+  row->addWidget(m_again);
   row->addWidget(m_export);
   row->addStretch(1);
   column->addLayout(row);
@@ -107,14 +110,11 @@ void CalibrateLibraryPanel::bind() {
   connect(m_repose, &QPushButton::clicked, this, [this] { Q_EMIT poseWanted(chosenCamera()); });
   connect(m_export, &QPushButton::clicked, this, [this] {
     const auto record = m_bench.calibration().library().find(chosenRecord().toStdString());
-    if (!record) return;
-    askWhereToSave(this, tr("Export the camera"), QString::fromStdString(record->camera) + QStringLiteral(".yaml"),
-                   {tr("ROS camera file (*.yaml)"), tr("OpenCV YAML (*.yml)"), tr("OpenCV XML (*.xml)")}, [this, from = record->file](const QString& to) {
-                     const auto file = vision::readCameraFile(from);
-                     const Status written = file ? vision::writeCameraFile(to.toStdString(), *file) : Status(file.error());
-                     m_bench.say(written ? tr("Camera exported to %1").arg(to) : QString::fromStdString(written.error().message));
-                   });
+    if (record) exportTo(*record);
   });
+  connect(m_again, &QPushButton::clicked, this, [this] { m_bench.calibration().solveAgain(chosenRecord().toStdString()); });
+  connect(&m_bench.calibration(), &session::CalibrationController::placed, this, &CalibrateLibraryPanel::refresh);
+  connect(&m_bench.calibration(), &session::CalibrationController::libraryChanged, this, &CalibrateLibraryPanel::refresh);
   connect(&m_bench.calibration(), &session::CalibrationController::applied, this, &CalibrateLibraryPanel::refresh);
   connect(&m_bench.health(), &session::HealthController::changed, this, [this] {
     if (isVisible()) refreshCameras();
@@ -122,7 +122,32 @@ void CalibrateLibraryPanel::bind() {
   connect(&m_bench.robot(), &RobotSession::stopChanged, this, &CalibrateLibraryPanel::refreshDifference);
 }
 
+void CalibrateLibraryPanel::exportTo(const session::CalibrationRecord& record) {
+  const bool camera = record.subject == session::Subject::kCamera;
+  const QStringList filters = camera ? QStringList{tr("ROS camera file (*.yaml)"), tr("OpenCV YAML (*.yml)"), tr("OpenCV XML (*.xml)")} : QStringList{tr("Placement (*.json)")};
+  askWhereToSave(this, tr("Export the calibration"), QString::fromStdString(record.name) + (camera ? QStringLiteral(".yaml") : QStringLiteral(".json")), filters,
+                 [this, camera, from = record.file](const QString& to) {
+                   Status written;
+                   if (camera) {
+                     const auto file = vision::readCameraFile(from);
+                     written = file ? vision::writeCameraFile(to.toStdString(), *file) : Status(file.error());
+                   } else {
+                     const auto placement = session::readPlacement(from);
+                     written = placement ? session::writePlacement(to.toStdString(), *placement) : Status(placement.error());
+                   }
+                   m_bench.say(written ? tr("Calibration exported to %1").arg(to) : QString::fromStdString(written.error().message));
+                 });
+}
+
 QString CalibrateLibraryPanel::difference() const { return m_difference->text(); }
+
+void CalibrateLibraryPanel::choose(const QString& camera) {
+  for (int row = 0; row < m_cameras->rowCount(); ++row) {
+    const auto* item = m_cameras->item(row, 0);
+    const bool is_camera = item->data(Qt::UserRole).toInt() == static_cast<int>(session::Subject::kCamera);
+    if (is_camera && item->data(Qt::UserRole + 1).toString() == camera) m_cameras->selectRow(row);
+  }
+}
 
 void CalibrateLibraryPanel::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
@@ -137,21 +162,18 @@ void CalibrateLibraryPanel::refresh() {
 void CalibrateLibraryPanel::refreshCameras() {
   const auto& workcell = m_bench.document().workcell();
   const QString chosen = chosenCamera();
+  const auto subject = chosenSubject();
   const QSignalBlocker quiet(m_cameras);
-  m_cameras->setRowCount(workcell ? static_cast<int>(workcell->cameras.size()) : 0);
-  for (int row = 0; row < m_cameras->rowCount(); ++row) {
-    const std::string& name = workcell->cameras[static_cast<std::size_t>(row)].name;
-    const auto record = m_bench.calibration().recordInUse(name);
-    const auto health = m_bench.health().of(name);
-    const auto file = m_bench.calibration().fileInUse(name);
-    const auto sure = file ? session::meanUncertainty(*file) : std::nullopt;
-    setCell(m_cameras, row, 0, QString::fromStdString(name));
-    setCell(m_cameras, row, 1, record ? QString::fromStdString(record->kind) : tr("workcell's file"));
-    setCell(m_cameras, row, 2, ageText(m_bench.health().ageDays(name)));
-    setCell(m_cameras, row, 3, sure ? QString::number(*sure, 'f', 3) : tr("not stated"));
-    setCell(m_cameras, row, 4, health.samples > 0 ? QString::number(health.off_px, 'f', 1) : QStringLiteral("-"));
-    setCell(m_cameras, row, 5, wordOf(health.level));
-    if (QString::fromStdString(name) == chosen) m_cameras->selectRow(row);
+  m_cameras->setRowCount(workcell ? static_cast<int>(workcell->cameras.size() + workcell->pan_tilts.size() + workcell->objects.size()) : 0);
+  int row = 0;
+  if (workcell) {
+    for (const auto& camera : workcell->cameras) fillCamera(row++, camera.name);
+    for (const auto& unit : workcell->pan_tilts) fillPlace(row++, session::Subject::kPanTilt, unit.name);
+    for (const auto& object : workcell->objects) fillPlace(row++, session::Subject::kObject, object.name);
+  }
+  for (row = 0; row < m_cameras->rowCount(); ++row) {
+    const auto* item = m_cameras->item(row, 0);
+    if (item->data(Qt::UserRole + 1).toString() == chosen && item->data(Qt::UserRole).toInt() == static_cast<int>(subject)) m_cameras->selectRow(row);
   }
   if (m_cameras->rowCount() > 0 && !m_cameras->selectionModel()->hasSelection()) m_cameras->selectRow(0);
   const auto health = m_bench.health().of(chosenCamera().toStdString());
@@ -162,9 +184,47 @@ void CalibrateLibraryPanel::refreshCameras() {
   m_health->setText(text);
 }
 
+void CalibrateLibraryPanel::fillCamera(int row, const std::string& name) {
+  const auto record = m_bench.calibration().recordInUse(name);
+  const auto health = m_bench.health().of(name);
+  const auto file = m_bench.calibration().fileInUse(name);
+  const auto sure = file ? session::meanUncertainty(*file) : std::nullopt;
+  setCell(m_cameras, row, 0, QString::fromStdString(name));
+  setCell(m_cameras, row, 1, record ? QString::fromStdString(record->kind) : tr("workcell's file"));
+  setCell(m_cameras, row, 2, ageText(m_bench.health().ageDays(name)));
+  setCell(m_cameras, row, 3, sure ? QString::number(*sure, 'f', 3) : tr("not stated"));
+  setCell(m_cameras, row, 4, health.samples > 0 ? QString::number(health.off_px, 'f', 1) : QStringLiteral("-"));
+  setCell(m_cameras, row, 5, wordOf(health.level));
+  m_cameras->item(row, 0)->setData(Qt::UserRole, static_cast<int>(session::Subject::kCamera));
+  m_cameras->item(row, 0)->setData(Qt::UserRole + 1, QString::fromStdString(name));
+}
+
+void CalibrateLibraryPanel::fillPlace(int row, session::Subject subject, const std::string& name) {
+  const auto record = m_bench.calibration().recordInUse(subject, name);
+  const double days = record ? (wallTime_s() - record->wall_time_s) / 86400 : -1;
+  const QString kind = subject == session::Subject::kPanTilt ? tr("pan-tilt %1") : tr("object %1");
+  setCell(m_cameras, row, 0, kind.arg(QString::fromStdString(name)));
+  setCell(m_cameras, row, 1, record ? QString::fromStdString(record->kind) : tr("workcell's file"));
+  setCell(m_cameras, row, 2, ageText(days));
+  for (const int column : {3, 4, 5}) setCell(m_cameras, row, column, QStringLiteral("-"));
+  m_cameras->item(row, 0)->setData(Qt::UserRole, static_cast<int>(subject));
+  m_cameras->item(row, 0)->setData(Qt::UserRole + 1, QString::fromStdString(name));
+}
+
+session::Subject CalibrateLibraryPanel::chosenSubject() const {
+  const auto* item = m_cameras->currentRow() >= 0 ? m_cameras->item(m_cameras->currentRow(), 0) : nullptr;
+  return item != nullptr ? static_cast<session::Subject>(item->data(Qt::UserRole).toInt()) : session::Subject::kCamera;
+}
+
+std::optional<session::CalibrationRecord> CalibrateLibraryPanel::recordInUse() const {
+  const auto subject = chosenSubject();
+  const std::string name = chosenCamera().toStdString();
+  return subject == session::Subject::kCamera ? m_bench.calibration().recordInUse(name) : m_bench.calibration().recordInUse(subject, name);
+}
+
 QString CalibrateLibraryPanel::chosenCamera() const {
   const auto* item = m_cameras->currentRow() >= 0 ? m_cameras->item(m_cameras->currentRow(), 0) : nullptr;
-  return item != nullptr ? item->text() : QString();
+  return item != nullptr ? item->data(Qt::UserRole + 1).toString() : QString();
 }
 
 QString CalibrateLibraryPanel::chosenRecord() const {
@@ -175,8 +235,9 @@ QString CalibrateLibraryPanel::chosenRecord() const {
 void CalibrateLibraryPanel::refreshRecords() {
   const auto& plain = m_bench.calibration().plainWorkcell();
   const QString camera = chosenCamera();
-  const auto records = plain && !camera.isEmpty() ? m_bench.calibration().library().records(plain->name, camera.toStdString()) : std::vector<session::CalibrationRecord>{};
-  const auto in_use = m_bench.calibration().recordInUse(camera.toStdString());
+  const auto records = plain && !camera.isEmpty() ? m_bench.calibration().library().records(plain->name, camera.toStdString(), chosenSubject()) : std::vector<session::CalibrationRecord>{};
+  const auto in_use = recordInUse();
+  const QString chosen = chosenRecord();
   {
     const QSignalBlocker quiet(m_records);
     m_records->setRowCount(static_cast<int>(records.size()) + (camera.isEmpty() ? 0 : 1));
@@ -198,24 +259,32 @@ void CalibrateLibraryPanel::refreshRecords() {
       m_records->item(last, 0)->setData(Qt::UserRole, QString());
       for (int column = 1; column < 6; ++column) setCell(m_records, last, column, QString());
     }
-    if (m_records->rowCount() > 0) m_records->selectRow(0);
+    int again = 0;
+    for (int row = 0; row < m_records->rowCount(); ++row) {
+      if (!chosen.isEmpty() && m_records->item(row, 0)->data(Qt::UserRole).toString() == chosen) again = row;
+    }
+    if (m_records->rowCount() > 0) m_records->selectRow(again);
   }
-  setWhyNot(m_repose, camera.isEmpty() ? tr("no camera is chosen.") : QString(), tr("Click known corners in a picture and put the camera right: two minutes"));
+  const bool is_camera = !camera.isEmpty() && chosenSubject() == session::Subject::kCamera;
+  setWhyNot(m_repose, is_camera ? QString() : tr("no camera is chosen."), tr("Click known corners in a picture and put the camera right: two minutes"));
   refreshDifference();
 }
 
 void CalibrateLibraryPanel::refreshDifference() {
   const QString camera = chosenCamera();
   const auto& plain = m_bench.calibration().plainWorkcell();
-  const auto* spec = plain ? plain->camera(camera.toStdString()) : nullptr;
-  const auto in_use = m_bench.calibration().recordInUse(camera.toStdString());
+  const bool is_place = chosenSubject() != session::Subject::kCamera;
+  const auto* spec = plain && !is_place ? plain->camera(camera.toStdString()) : nullptr;
+  const auto in_use = recordInUse();
   const QString id = chosenRecord();
   const auto record = m_bench.calibration().library().find(id.toStdString());
-  QString why = m_records->currentRow() < 0 || spec == nullptr ? tr("no calibration is chosen.") : QString();
-  setWhyNot(m_export, why.isEmpty() && !record ? tr("the workcell's own file is a file already.") : why, tr("Write it as a camera file"));
+  QString why = m_records->currentRow() < 0 || (spec == nullptr && !is_place) ? tr("no calibration is chosen.") : QString();
+  setWhyNot(m_again, why.isEmpty() && !record ? tr("the workcell's own file has no raw data.") : why, tr("Make it anew from the raw data kept with it; the answer is kept beside it, not in use"));
+  setWhyNot(m_export, why.isEmpty() && !record ? tr("the workcell's own file is a file already.") : why, tr("Write it as a file"));
   if (why.isEmpty() && (in_use ? in_use->id : std::string()) == id.toStdString()) why = tr("it is in use.");
   if (why.isEmpty()) why = m_bench.whyNotCalibrate();
   setWhyNot(m_use, why, tr("Use this calibration from now on"));
+  if (is_place) return refreshPlacement(record);
   if (spec == nullptr) return m_canvas->clearPicture(tr("No camera."));
   const auto now = m_bench.calibration().fileInUse(camera.toStdString());
   const auto then = vision::readCameraFile(record ? record->file : spec->calibration);
@@ -242,9 +311,25 @@ void CalibrateLibraryPanel::refreshDifference() {
                                  QString::number(difference->after_turn_rms_px, 'f', 3), QString::number(arrow, 'f', 0)));
 }
 
+// Of a pan-tilt or object: how far the chosen placement is from the one in use, and how sure it is.
+void CalibrateLibraryPanel::refreshPlacement(const std::optional<session::CalibrationRecord>& record) {
+  const auto place = m_bench.calibration().placementOf(chosenSubject(), chosenCamera().toStdString(), record ? record->id : std::string());
+  const auto in_use = m_bench.calibration().recordInUse(chosenSubject(), chosenCamera().toStdString());
+  const auto now = m_bench.calibration().placementOf(chosenSubject(), chosenCamera().toStdString(), in_use ? in_use->id : std::string());
+  m_canvas->clearPicture(tr("A placement has no picture:\nits difference stands below."));
+  if (!place || !now) return m_difference->setText(QString::fromStdString(place ? now.error().message : place.error().message));
+  const Pose &a = now->pose.pose, &b = place->pose.pose;
+  m_difference->setText(tr("%1 mm and %2\u00b0 from the one in use; stated to %3 mm (1 sigma, one metre from its origin).")
+                            .arg(QString::number(1000 * (a.translation() - b.translation()).norm(), 'f', 2),
+                                 QString::number(kDegPerRad * angleBetween(a.linear(), b.linear()), 'f', 3),
+                                 record ? QString::number(1000 * place->uncertaintyAtOneMetre(), 'f', 2) : QStringLiteral("-")));
+}
+
 void CalibrateLibraryPanel::use() {
   if (!m_use->isEnabled()) return;
-  const Status used = m_bench.calibration().use(chosenCamera().toStdString(), chosenRecord().toStdString());
+  const bool camera = chosenSubject() == session::Subject::kCamera;
+  const std::string name = chosenCamera().toStdString(), id = chosenRecord().toStdString();
+  const Status used = camera ? m_bench.calibration().use(name, id) : m_bench.calibration().usePlacement(chosenSubject(), name, id);
   if (!used) m_bench.say(QString::fromStdString(used.error().message));
 }
 

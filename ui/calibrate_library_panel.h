@@ -3,6 +3,9 @@
 /// @file
 /// CalibrateLibraryPanel: how the cameras do, and every calibration that was accepted.
 
+#include <optional>
+#include <string>
+
 #include <QWidget>
 
 #include "ui/appearance.h"
@@ -17,8 +20,8 @@ class QTableWidget;
 
 namespace longarm::ui {
 
-/// Left the cameras with age and health, below them the calibrations of the chosen one; right the difference of a chosen
-/// calibration from the one in use, over the picture.  GUI thread only.
+/// Left the cameras with age and health, and the pan-tilts and objects; below them the calibrations of the chosen one; right the
+/// difference of a chosen calibration from the one in use, over the picture.  GUI thread only.
 class CalibrateLibraryPanel final : public QWidget {
   Q_OBJECT
 
@@ -28,7 +31,11 @@ class CalibrateLibraryPanel final : public QWidget {
   QTableWidget* cameras() const { return m_cameras; }
   QTableWidget* records() const { return m_records; }
   widgets::HoldButton* useButton() const { return m_use; }
+  QPushButton* reposeButton() const { return m_repose; }
+  QPushButton* againButton() const { return m_again; }
+  QPushButton* exportButton() const { return m_export; }
   QString difference() const;
+  void choose(const QString& camera);
 
  Q_SIGNALS:
   void poseWanted(const QString& camera);          ///< The two-minute way back after a knock.
@@ -44,13 +51,19 @@ class CalibrateLibraryPanel final : public QWidget {
   void refreshCameras();
   void refreshRecords();
   void refreshDifference();
-  QString chosenCamera() const;
+  void refreshPlacement(const std::optional<session::CalibrationRecord>& record);
+  void fillCamera(int row, const std::string& name);
+  void fillPlace(int row, session::Subject subject, const std::string& name);
+  void exportTo(const session::CalibrationRecord& record);
+  session::Subject chosenSubject() const;
+  std::optional<session::CalibrationRecord> recordInUse() const;
+  QString chosenCamera() const;                    ///< Or pan-tilt, or object.
   QString chosenRecord() const;                    ///< Id; empty: the workcell's own file, or nothing is chosen.
   void use();
 
   Workbench& m_bench;
   QTableWidget *m_cameras, *m_records;
-  QPushButton *m_export, *m_repose;
+  QPushButton *m_export, *m_repose, *m_again;
   widgets::HoldButton* m_use;
   widgets::ImageCanvas* m_canvas;
   QDoubleSpinBox* m_depth;

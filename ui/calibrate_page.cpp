@@ -22,6 +22,8 @@ CalibratePage::CalibratePage(Workbench& bench, Appearance& appearance, QWidget* 
   row->addWidget(m_stack, 1);
   m_intrinsics = new CalibrateIntrinsicsPanel(bench, appearance);
   addTool(tr("Lens (board)"), tr("Focal lengths, principal point and distortion from pictures of a board"), m_intrinsics);
+  m_stereo = new CalibrateStereoPanel(bench, appearance);
+  addTool(tr("Stereo pair"), tr("How two cameras stand to each other, from a board before both"), m_stereo);
   m_lens = new CalibrateLensPanel(bench, appearance);
   m_fixture = new CalibrateFixturePanel(bench, appearance);
   m_pose = new CalibratePosePanel(bench, appearance);

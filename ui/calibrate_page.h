@@ -10,6 +10,7 @@
 #include "ui/calibrate_lens_panel.h"
 #include "ui/calibrate_library_panel.h"
 #include "ui/calibrate_pose_panel.h"
+#include "ui/calibrate_stereo_panel.h"
 #include "ui/calibrate_zoom_panel.h"
 
 class QListWidget;
@@ -25,6 +26,7 @@ class CalibratePage final : public QWidget {
   CalibratePage(Workbench& bench, Appearance& appearance, QWidget* parent = nullptr);
 
   CalibrateIntrinsicsPanel* intrinsics() const { return m_intrinsics; }
+  CalibrateStereoPanel* stereo() const { return m_stereo; }
   CalibrateLensPanel* lens() const { return m_lens; }
   CalibrateFixturePanel* fixture() const { return m_fixture; }
   CalibratePosePanel* pose() const { return m_pose; }
@@ -38,6 +40,7 @@ class CalibratePage final : public QWidget {
   QListWidget* m_list;
   QStackedWidget* m_stack;
   CalibrateIntrinsicsPanel* m_intrinsics;
+  CalibrateStereoPanel* m_stereo;
   CalibrateLensPanel* m_lens;
   CalibrateFixturePanel* m_fixture;
   CalibratePosePanel* m_pose;

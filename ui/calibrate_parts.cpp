@@ -103,6 +103,13 @@ void setCell(QTableWidget* table, int row, int column, const QString& text) {
   item->setToolTip(text.toHtmlEscaped());
 }
 
+void setTick(QTableWidget* table, int row, int column, bool possible, bool ticked) {
+  setCell(table, row, column, {});
+  auto* item = table->item(row, column);
+  item->setFlags(possible ? Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable : Qt::ItemIsEnabled | Qt::ItemIsSelectable);
+  item->setCheckState(possible && ticked ? Qt::Checked : Qt::Unchecked);
+}
+
 widgets::HoldButton* holdButton(const QString& text, Appearance& appearance, QWidget* parent) {
   auto* button = new widgets::HoldButton(text, kHold_ms, parent);
   const auto style = [button, &appearance] { button->setTheme(appearance.theme()); };

@@ -52,6 +52,8 @@ QLabel* wordLabel(QWidget* parent, bool muted = false);
 QProgressBar* fillBar(QWidget* parent);
 /// A table of rows without row numbers; the last column takes the room.
 QTableWidget* plainTable(const QStringList& columns, QWidget* parent);
+/// A tick whether a row counts; without one where it cannot.
+void setTick(QTableWidget* table, int row, int column, bool possible, bool ticked);
 void setCell(QTableWidget* table, int row, int column, const QString& text);
 /// A button that is held for 0.8 s, in the colours in force.
 widgets::HoldButton* holdButton(const QString& text, Appearance& appearance, QWidget* parent);

@@ -28,6 +28,7 @@ namespace {
 constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kPickRadius = 12;         // [screen px]
 constexpr int kColumnWidth = 340;
+constexpr double kMark_m = 0.007;
 
 }  // namespace
 
@@ -49,7 +50,10 @@ CalibratePosePanel::CalibratePosePanel(Workbench& bench, Appearance& appearance,
   refresh();
 }
 
-CalibratePosePanel::~CalibratePosePanel() { m_contents.reset(); }
+CalibratePosePanel::~CalibratePosePanel() {
+  m_marks.reset();
+  m_contents.reset();
+}
 
 QWidget* CalibratePosePanel::buildPicture(Appearance& appearance) {
   const auto [frame, column, row, canvas] = pictureFrame(appearance, this);
@@ -123,7 +127,9 @@ QWidget* CalibratePosePanel::buildAnswer(Appearance& appearance) {
   m_result->setMinimumHeight(96);
   m_result->setTextInteractionFlags(Qt::TextSelectableByMouse);
   m_apply = holdButton(tr("Hold to use"), appearance, box);
+  m_other = new QPushButton(tr("Another pose fits, too: show it"), box);
   column->addWidget(m_result);
+  column->addWidget(m_other);
   column->addWidget(m_apply);
   return box;
 }
@@ -137,12 +143,12 @@ void CalibratePosePanel::buildScene(Appearance& appearance) {
   m_views->setStretchFactor(1, 2);
   m_contents = std::make_unique<SceneContents>(m_scene->renderer());
   m_contents->setWorkcell(m_bench.document().workcell());
+  m_marks = std::make_unique<scene::WorldRep>();
+  m_marks->addTo(m_scene->renderer());
   const auto style = [this, &appearance] { m_scene->setTheme(appearance.theme()); };
   style();
   connect(&appearance, &Appearance::changed, this, style);
-  connect(m_scene, &widgets::SceneView::picked, this, [this](quint64 id) {
-    if (id > 0) model().setLandmark(static_cast<int>(id) - 1);
-  });
+  connect(m_scene, &widgets::SceneView::clicked, this, &CalibratePosePanel::onScene);
   m_scene->showPreset(scene::CameraPreset::kIso);
 }
 
@@ -168,6 +174,9 @@ void CalibratePosePanel::bind() {
     if (m_points->currentRow() >= 0) model().remove(static_cast<std::size_t>(m_points->currentRow()));
   });
   connect(m_clear, &QPushButton::clicked, this, [this] { model().clear(); });
+  connect(m_other, &QPushButton::clicked, this, [this] {
+    if (model().outcome() && !model().outcome()->result.alternatives.empty()) model().takeAlternative();
+  });
   connect(m_apply, &widgets::HoldButton::held, this, &CalibratePosePanel::apply);
   connect(m_canvas, &widgets::ImageCanvas::pointer, this, &CalibratePosePanel::onPointer);
   connect(&model(), &PoseController::changed, this, &CalibratePosePanel::refresh);
@@ -218,9 +227,17 @@ void CalibratePosePanel::take() { m_bench.snapshots().take(m_camera->currentData
 
 void CalibratePosePanel::onPointer(const vision::PointerEvent& event) {
   if (!event.left || event.phase != vision::PointerPhase::kPress) return;
-  // Control takes the landmark under the pointer; a plain click says where the chosen one is.
-  if (event.modifiers.control) model().setLandmark(model().landmarkNear(event.pixel, event.imageTolerance(kPickRadius)));
-  else model().pick(event.pixel);
+  // Control takes what is drawn under the pointer; a plain click says where the chosen point is.
+  if (!event.modifiers.control) return model().pick(event.pixel);
+  if (const Status stuck = model().stickAtPixel(event.pixel, event.imageTolerance(kPickRadius)); !stuck) m_bench.say(QString::fromStdString(stuck.error().message));
+}
+
+// A listed corner within reach of the click, else whatever surface is there.
+void CalibratePosePanel::onScene(const QPointF& position) {
+  if (const auto id = m_scene->pick(position, kPickRadius)) return model().setLandmark(static_cast<int>(*id) - 1);
+  const auto sight = m_scene->sightAt(position);
+  const Status stuck = model().stick(sight.from, sight.along, kPickRadius * sight.radians_per_pixel);
+  if (!stuck) m_bench.say(QString::fromStdString(stuck.error().message));
 }
 
 void CalibratePosePanel::refreshSnapshots() {
@@ -254,9 +271,9 @@ void CalibratePosePanel::refresh() {
     m_canvas->setPicture(shown->image);
     m_canvas->setOverlay(model().overlay());
     const int chosen = model().landmark();
-    m_hint->setText(chosen >= 0 ? tr("Click %1 in the picture. Ctrl+click takes the corner drawn there; so does a click in the scene.")
+    m_hint->setText(chosen >= 0 ? tr("Click %1 in the picture. Another: click any corner, edge or surface in the scene, or its drawing here with Ctrl.")
                                       .arg(QString::fromStdString(model().landmarks()[static_cast<std::size_t>(chosen)].name))
-                                : tr("Choose a corner in the list, in the scene, or by Ctrl+click in the picture."));
+                                : tr("Choose a corner in the list; or click any corner, edge or surface in the scene, or its drawing here with Ctrl."));
   } else {
     m_canvas->clearPicture(tr("No picture of this camera yet.\n\n%1").arg(whyNotTake().isEmpty() ? tr("Take one.") : whyNotTake()));
     m_hint->setText({});
@@ -292,10 +309,17 @@ void CalibratePosePanel::refreshAnswer() {
   QString text = model().outcome() ? model().resultText() : model().solving() ? tr("Calculating ...") : model().why();
   if (const auto miss = model().missInUse()) text = tr("With the calibration in use these points miss by %1 px rms.").arg(*miss, 0, 'f', 1) + QLatin1Char('\n') + text;
   m_result->setText(text);
+  m_other->setVisible(model().outcome() && !model().outcome()->result.alternatives.empty());
+  m_other->setToolTip(tr("Compare the drawn edges with the picture before one of the poses is used"));
   QString why = model().whyNotApply();
   if (why.isEmpty()) why = m_bench.whyNotCalibrate();
-  setWhyNot(m_apply, why, model().unknown() == PoseController::Unknown::kObj ? tr("The object stands there from now on, until the window is closed")
-                                                                            : tr("Keep it in the library and use it for this camera from now on"));
+  QString tip = model().unknown() == PoseController::Unknown::kExt   ? tr("Keep it in the library and use it for this camera from now on")
+                : model().unknown() == PoseController::Unknown::kDev ? tr("Keep it in the library: the pan-tilt and its cameras stand there from now on")
+                                                                     : tr("Keep it in the library: the object stands there from now on");
+  const QString worse = why.isEmpty() ? model().whyWorse() : QString();
+  if (!worse.isEmpty()) tip += QLatin1Char('\n') + worse;
+  m_apply->setText(worse.isEmpty() ? tr("Hold to use") : tr("Hold to use, though worse"));
+  setWhyNot(m_apply, why, tip);
 }
 
 void CalibratePosePanel::refreshScene() {
@@ -312,16 +336,39 @@ void CalibratePosePanel::refreshScene() {
       const auto at = model().landmarks()[i].inRoot(*workcell->model, q);
       if (at) pickables.push_back({i + 1, {*at}});
     }
+    refreshMarks(q);
   }
+  m_contents->setWorld(m_bench.document());
   m_scene->setPickables(std::move(pickables));
   m_scene->requestRender();
 }
 
+void CalibratePosePanel::refreshMarks(const Eigen::VectorXd& q) {
+  const auto& robot = *m_bench.document().workcell()->model;
+  std::vector<planning::WorldObject> marks;
+  const auto add = [&](const session::Landmark& landmark, double radius, vision::OverlayRole role) {
+    const auto at = landmark.inRoot(robot, q);
+    if (!at) return;
+    planning::WorldObject mark;
+    mark.name = "mark " + std::to_string(marks.size());
+    mark.shape = planning::Sphere{radius};
+    mark.X_WO.translation() = *at;
+    const QColor colour = m_appearance.theme().role(role).color;
+    mark.rgba = {colour.redF(), colour.greenF(), colour.blueF(), 1};
+    marks.push_back(mark);
+  };
+  for (const auto& pick : model().picks()) {
+    if (pick.snapshot == (model().snapshot() ? model().snapshot()->id : SnapshotId())) add(pick.landmark, kMark_m, vision::OverlayRole::kHandle);
+  }
+  if (model().landmark() >= 0) add(model().landmarks()[static_cast<std::size_t>(model().landmark())], 1.6 * kMark_m, vision::OverlayRole::kActiveHandle);
+  m_marks->update(marks);
+}
+
 void CalibratePosePanel::apply() {
   if (!m_apply->isEnabled()) return;
-  const Status applied = model().unknown() == PoseController::Unknown::kObj
-                             ? m_bench.calibration().placeObject(model().object(), model().solvedObjectPose())
-                             : m_bench.calibration().apply(model().change());
+  const Status applied = model().unknown() == PoseController::Unknown::kExt
+                             ? m_bench.calibration().apply(model().change())
+                             : m_bench.calibration().apply(model().placeChange());
   if (!applied) m_bench.say(QString::fromStdString(applied.error().message));
 }
 

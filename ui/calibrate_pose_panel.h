@@ -39,9 +39,11 @@ class CalibratePosePanel final : public QWidget {
   QComboBox* camera() const { return m_camera; }
   QComboBox* unknown() const { return m_unknown; }
   QComboBox* object() const { return m_object; }
+  widgets::SceneView* scene() const { return m_scene; }
   QTableWidget* points() const { return m_points; }
   QListWidget* landmarks() const { return m_landmarks; }
   QPushButton* takeButton() const { return m_take; }
+  QPushButton* otherButton() const { return m_other; }
   widgets::HoldButton* applyButton() const { return m_apply; }
   QString result() const;
 
@@ -61,6 +63,8 @@ class CalibratePosePanel final : public QWidget {
   void refreshPoints();
   void refreshAnswer();
   void refreshScene();
+  void refreshMarks(const Eigen::VectorXd& q);
+  void onScene(const QPointF& position);
   void onPointer(const vision::PointerEvent& event);
   void takeGuess();
   void take();
@@ -74,12 +78,13 @@ class CalibratePosePanel final : public QWidget {
   QSplitter* m_views;
   widgets::SceneView* m_scene = nullptr;           // Made when it is first seen.
   std::unique_ptr<SceneContents> m_contents;
+  std::unique_ptr<scene::WorldRep> m_marks;        // Clicked points and the chosen one.
   QTabWidget* m_steps;
   QComboBox *m_camera, *m_unknown, *m_object, *m_snapshot;
   QListWidget* m_landmarks;
   std::array<QDoubleSpinBox*, 6> m_guess;
   QTableWidget* m_points;
-  QPushButton *m_take, *m_remove, *m_clear;
+  QPushButton *m_take, *m_remove, *m_clear, *m_other;
   widgets::HoldButton* m_apply;
   QLabel *m_hint, *m_result;
   bool m_filling = false;

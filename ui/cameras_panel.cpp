@@ -35,6 +35,7 @@ CamerasPanel::CamerasPanel(Workbench& bench, Appearance& appearance, QWidget* pa
   connect(&m_bench.live(), &LivePictures::thumbnailArrived, this, [this](const QString& camera) {
     if (auto* tile = m_strip->tile(camera)) tile->setPicture(m_bench.live().thumbnail(camera));
   });
+  connect(&m_bench.health(), &session::HealthController::changed, this, &CamerasPanel::refreshHealth);
   connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &CamerasPanel::refreshAges);
   m_observer = m_bench.document().observe([this](const session::Change& change) {
     if (change.kind == session::ChangeKind::kWorkcellChanged) rebuild();
@@ -67,6 +68,19 @@ void CamerasPanel::rebuild() {
   m_strip->setCameras(m_cameras);
   m_empty->setVisible(m_cameras.empty());
   m_scroll->setVisible(!m_cameras.empty());
+  refreshHealth();
+}
+
+void CamerasPanel::refreshHealth() {
+  using calibration::HealthLevel;
+  using widgets::StatusLamp;
+  for (const auto& camera : m_cameras) {
+    const auto health = m_bench.health().of(camera.toStdString());
+    const auto level = health.level == HealthLevel::kKnocked    ? StatusLamp::Level::kFault
+                       : health.level == HealthLevel::kDoubtful ? StatusLamp::Level::kDegraded
+                                                                : StatusLamp::Level::kOk;
+    if (auto* tile = m_strip->tile(camera)) tile->setHealth(level, QString::fromStdString(health.why));
+  }
 }
 
 void CamerasPanel::refreshAges() {

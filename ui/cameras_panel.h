@@ -29,6 +29,7 @@ class CamerasPanel final : public QWidget {
  private:
   void rebuild();
   void refreshAges();
+  void refreshHealth();
   void bindKeys();
   void chooseNumber(int number, vision::PaneSide side);
 

@@ -34,7 +34,13 @@ LivePictures::LivePictures(RobotSession& robot, session::JobRunner& jobs, QObjec
 
 void LivePictures::setShown(vision::PaneSide side, const QString& camera) { m_shown[static_cast<int>(side)] = camera; }
 
-bool LivePictures::isShown(const QString& camera) const { return m_shown[0] == camera || m_shown[1] == camera || m_watched == camera; }
+void LivePictures::setWatched(const QStringList& cameras) {
+  if (cameras == m_watched) return;
+  m_watched = cameras;
+  Q_EMIT watchedChanged();
+}
+
+bool LivePictures::isShown(const QString& camera) const { return m_shown[0] == camera || m_shown[1] == camera || m_watched.contains(camera); }
 
 const cv::Mat& LivePictures::picture(const QString& camera) const {
   static const cv::Mat none;

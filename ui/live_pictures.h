@@ -10,6 +10,7 @@
 #include <QImage>
 #include <QObject>
 #include <QString>
+#include <QStringList>
 #include <opencv2/core/mat.hpp>
 
 #include "ui/robot_session.h"
@@ -29,8 +30,9 @@ class LivePictures final : public QObject {
 
   /// The camera that a pane shows live; empty: none.
   void setShown(vision::PaneSide side, const QString& camera);
-  /// One more camera that is looked at, by a calibration; empty: none.
-  void setWatched(const QString& camera) { m_watched = camera; }
+  /// More cameras that are looked at, by a calibration.
+  void setWatched(const QStringList& cameras);
+  const QStringList& watched() const { return m_watched; }
   /// The cameras as they are calibrated now.
   void setWorkcell(std::shared_ptr<const planning::Workcell> workcell) { m_workcell = std::move(workcell); }
 
@@ -46,6 +48,7 @@ class LivePictures final : public QObject {
  Q_SIGNALS:
   void pictureArrived(const QString& camera);
   void thumbnailArrived(const QString& camera);
+  void watchedChanged();
 
  private:
   struct Entry {
@@ -70,7 +73,7 @@ class LivePictures final : public QObject {
   RobotSession& m_robot;
   session::JobRunner& m_jobs;
   std::array<QString, 2> m_shown;
-  QString m_watched;
+  QStringList m_watched;
   std::shared_ptr<const planning::Workcell> m_workcell;
   std::map<QString, Entry> m_entries;
   unsigned m_polls = 0;

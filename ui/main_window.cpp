@@ -204,6 +204,11 @@ void MainWindow::makeMenus() {
 void MainWindow::connectPanels() {
   connect(m_stop_keys, &StopKeys::stopPressed, this, [this] { m_bench.robot().stop("operator", "the stop key was pressed"); });
   connect(m_tasks, &TaskTabs::taskChanged, this, &MainWindow::showTask);
+  connect(m_strip, &StatusStrip::healthWanted, this, [this](const QString& camera) {
+    m_tasks->setTask(Task::kCalibrate);
+    m_calibrate->showTool(m_calibrate->library());
+    m_calibrate->library()->choose(camera);
+  });
   connect(m_cameras, &CamerasPanel::chosen, this, [this](const QString& camera, PaneSide side) { m_pictures->pane(side)->showLive(camera); });
   for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
     SnapshotPane* pane = m_pictures->pane(side);

@@ -61,6 +61,8 @@ StatusStrip::StatusStrip(Workbench& bench, Actions& actions, Appearance& appeara
   row->addWidget(m_arm);
   row->addWidget(m_video);
   m_cameras = new StatusLamp(this);
+  m_cameras->setCursor(Qt::PointingHandCursor);
+  connect(m_cameras, &StatusLamp::clicked, this, [this] { Q_EMIT healthWanted(m_bench.health().worstCamera()); });
   row->addWidget(m_cameras);
   m_message = new ElidedLabel(this);
   m_message->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
@@ -145,17 +147,19 @@ void StatusStrip::showArm() {
 
 void StatusStrip::showVideo() {
   std::optional<double> oldest;
-  for (const auto side : {vision::PaneSide::kLeft, vision::PaneSide::kRight}) {
-    const auto age = m_bench.live().age(m_bench.paneCamera(side));
+  // While a calibration looks through cameras, the others are silent.
+  const QStringList panes{m_bench.paneCamera(vision::PaneSide::kLeft), m_bench.paneCamera(vision::PaneSide::kRight)};
+  for (const QString& camera : m_bench.live().watched().isEmpty() ? panes : m_bench.live().watched()) {
+    const auto age = m_bench.live().age(camera);
     if (age) oldest = std::max(oldest.value_or(0), *age);
   }
   if (!oldest) {
-    m_video->setStatus(StatusLamp::Level::kLost, tr("no video"), tr("No picture has come from the panes' cameras"));
+    m_video->setStatus(StatusLamp::Level::kLost, tr("no video"), tr("No picture has come from the cameras that are looked through"));
     return;
   }
   const auto level = *oldest < 0.25 ? StatusLamp::Level::kOk : *oldest < 1 ? StatusLamp::Level::kDegraded : StatusLamp::Level::kLost;
   m_video->setStatus(level, tr("video %1 s").arg(QString::number(std::min(*oldest, 999.0), 'f', *oldest < 10 ? 1 : 0)),
-                     tr("Age of the older of the panes' live pictures, from exposure"));
+                     tr("Age of the oldest of the live pictures that are looked at, from exposure"));
 }
 
 // By exception: nothing is said while no camera looks knocked.

@@ -27,6 +27,10 @@ class StatusStrip final : public QFrame {
 
   /// The sentence shown now; empty when it has grown old.
   QString message() const;
+  widgets::StatusLamp* cameraLamp() const { return m_cameras; }
+
+ Q_SIGNALS:
+  void healthWanted(const QString& camera);        ///< The lamp of a doubtful camera was clicked.
 
  private:
   void applyTheme();

@@ -25,7 +25,7 @@ Workbench::Workbench(const QString& autosave_folder, QObject* parent)
       m_world(m_document, m_history), m_held(m_document, m_world), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
       m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
-      m_lens(m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
+      m_lens(m_calibration, m_jobs), m_stereo(m_document, m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
   // A robot that renders its pictures beside a compiler, or sends them over a poor radio, needs seconds for one.
   session::SnapshotTiming timing;
   timing.timeout_s = 10;
@@ -57,7 +57,9 @@ void Workbench::connectParts() {
   connect(&m_held, &session::HeldController::said, this, &Workbench::said);
   connect(&m_robot, &RobotSession::noticed, this, &Workbench::said);
   connect(&m_snapshots, &session::SnapshotController::failed, this, &Workbench::said);
-  connect(&m_snapshots, &session::SnapshotController::stateChanged, this, &Workbench::favourPair);
+  connect(&m_snapshots, &session::SnapshotController::stateChanged, this, &Workbench::favourCameras);
+  connect(&m_live, &LivePictures::watchedChanged, this, &Workbench::favourCameras);
+  connect(&m_robot, &RobotSession::linkChanged, this, &Workbench::favourCameras);
   connect(&m_plans, &session::PlanController::failed, this, &Workbench::said);
   connect(&m_targeting, &session::TargetingController::liveMeasureChanged, this, &Workbench::lookAtReach);
   connect(&m_targeting, &session::TargetingController::featuresChanged, this, &Workbench::lookAtReach);
@@ -93,12 +95,17 @@ void Workbench::connectCalibration() {
     useCalibrations();
     say(tr("Camera %1 uses another calibration now; snapshots keep the one they were taken with.").arg(camera));
   });
-  connect(&m_calibration, &session::CalibrationController::objectPlaced, this, [this](const QString& object) {
+  connect(&m_calibration, &session::CalibrationController::placed, this, [this](const QString& name) {
     useCalibrations();
-    say(tr("Object %1 stands where it was calibrated to, until the window is closed.").arg(object));
+    say(tr("%1 stands where its placement in use says; snapshots keep what they were taken with.").arg(name));
   });
   connect(&m_calibration.intrinsics(), &session::IntrinsicsController::failed, this, &Workbench::said);
   connect(&m_lens, &session::LensController::failed, this, &Workbench::said);
+  connect(&m_calibration, &session::CalibrationController::failed, this, &Workbench::said);
+  connect(&m_calibration, &session::CalibrationController::solvedAgain, this, [this](const QString& id) {
+    say(tr("Solved again from its raw data: kept as %1, not in use. Compare the two in the library.").arg(id));
+  });
+  connect(&m_stereo, &session::StereoController::failed, this, &Workbench::said);
   connect(&m_fixture, &session::FixtureController::failed, this, &Workbench::said);
   connect(&m_zoom, &session::ZoomController::failed, this, &Workbench::said);
   connect(&m_health, &session::HealthController::changed, this, [this] {
@@ -196,14 +203,17 @@ void Workbench::takePair() {
   m_snapshots.takePair(m_pane_cameras[0], m_pane_cameras[1]);
 }
 
-// While a pair is being taken the other cameras are silent: on a slow link or a busy robot each costs it time.
-void Workbench::favourPair() {
+// While a pair is taken, or a calibration looks through a camera, the others are silent: on a slow link or a busy robot each
+// costs time, and a board that rests for two seconds must be seen twice.
+void Workbench::favourCameras() {
   auto* runtime = m_robot.runtime();
-  if (runtime == nullptr) return;
-  const bool taking = m_snapshots.state() == session::SnapshotController::State::kWaiting;
+  if (runtime == nullptr || !m_robot.linkUp()) return;
+  const bool taking = m_snapshots.state() == session::SnapshotController::State::kWaiting, watching = !m_live.watched().isEmpty();
   for (const auto& camera : runtime->workcell().cameras) {
     const QString name = QString::fromStdString(camera.name);
-    if (name != m_pane_cameras[0] && name != m_pane_cameras[1]) (void)runtime->streamCamera(camera.name, !taking);
+    const bool shown = name == m_pane_cameras[0] || name == m_pane_cameras[1];
+    const bool wanted = taking ? shown : !watching || m_live.watched().contains(name);
+    (void)runtime->streamCamera(camera.name, wanted);
   }
 }
 

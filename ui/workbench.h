@@ -14,6 +14,7 @@
 #include "session/calibration/health_controller.h"
 #include "session/calibration/lens_controller.h"
 #include "session/calibration/pose_controller.h"
+#include "session/calibration/stereo_controller.h"
 #include "session/calibration/zoom_controller.h"
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
@@ -66,6 +67,7 @@ class Workbench final : public QObject {
   session::CalibrationController& calibration() { return m_calibration; }
   session::PoseController& pose() { return m_pose; }
   session::LensController& lens() { return m_lens; }
+  session::StereoController& stereo() { return m_stereo; }
   session::FixtureController& fixture() { return m_fixture; }
   session::ZoomController& zoom() { return m_zoom; }
   session::HealthController& health() { return m_health; }
@@ -102,7 +104,7 @@ class Workbench final : public QObject {
   void tellObstacles();
   void lookAtGripper();
   void chooseCameras();
-  void favourPair();
+  void favourCameras();
   void connectCalibration();
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
@@ -127,6 +129,7 @@ class Workbench final : public QObject {
   session::CalibrationController m_calibration;
   session::PoseController m_pose;
   session::LensController m_lens;
+  session::StereoController m_stereo;
   session::FixtureController m_fixture;
   session::ZoomController m_zoom;
   session::HealthController m_health;

@@ -12,8 +12,16 @@ CameraTile::CameraTile(const QString& camera, int number, QWidget* parent)
     : QWidget(parent), m_camera(camera), m_number(number) {
   setCursor(Qt::PointingHandCursor);
   setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Preferred);
-  setToolTip(tr("Show %1 live in the left pane (key %2); with Shift or the right button in the right pane")
-                 .arg(camera.toHtmlEscaped()).arg(number));
+  setHealth(StatusLamp::Level::kOk, {});
+}
+
+void CameraTile::setHealth(StatusLamp::Level level, const QString& words) {
+  QString tip = tr("Show %1 live in the left pane (key %2); with Shift or the right button in the right pane").arg(m_camera.toHtmlEscaped()).arg(m_number);
+  if (!words.isEmpty()) tip += QStringLiteral("<br>") + words.toHtmlEscaped();
+  setToolTip(tip);
+  if (level == m_health) return;
+  m_health = level;
+  update();
 }
 
 void CameraTile::setTheme(const Theme& theme) {
@@ -59,6 +67,11 @@ void CameraTile::paintEvent(QPaintEvent*) {
   painter.setPen(m_theme.text);
   const QRect line(0, height() - caption, width(), caption);
   painter.drawText(line, Qt::AlignVCenter | Qt::AlignLeft, QStringLiteral("%1 %2").arg(m_number).arg(m_camera));
+  const double side = caption - 4;
+  painter.setRenderHint(QPainter::Antialiasing);
+  StatusLamp::paintShape(painter, {width() - side - 3, line.top() + 2.0, side, side}, m_health, m_theme);
+  painter.setRenderHint(QPainter::Antialiasing, false);
+  painter.setPen(m_theme.text);
   if (!m_age) return;
   const QString age = freshness == Freshness::kFrozen ? tr("FROZEN %1 s").arg(QString::number(*m_age, 'f', 1))
                                                       : tr("%1 s").arg(QString::number(*m_age, 'f', 1));

@@ -10,6 +10,7 @@
 #include <QImage>
 #include <QWidget>
 
+#include "widgets/status_lamp.h"
 #include "widgets/theme.h"
 
 namespace longarm::widgets {
@@ -25,6 +26,9 @@ class CameraTile final : public QWidget {
   /// Age of the picture [s]; nothing: never had one.
   void setAge(std::optional<double> age_s);
   std::optional<double> age() const { return m_age; }
+  /// Whether its calibration can be trusted: a shape at the end of its name, and words for the tooltip.
+  void setHealth(StatusLamp::Level level, const QString& words);
+  StatusLamp::Level health() const { return m_health; }
   QSize sizeHint() const override { return {128, 110}; }
   QSize minimumSizeHint() const override { return {96, 64}; }
 
@@ -41,6 +45,7 @@ class CameraTile final : public QWidget {
   Theme m_theme = Theme::dark();
   QImage m_picture;
   std::optional<double> m_age;
+  StatusLamp::Level m_health = StatusLamp::Level::kOk;
 };
 
 /// A column of tiles.  Takes values; GUI thread only.

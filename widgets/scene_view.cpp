@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kFrame_ms = 33;
 constexpr int kShareOfTime = 3, kSlowest_ms = 250, kSmoothUpTo_ms = 40;
+constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr double kClickSlack = 4;              // a press that moves less is a click [screen px]
 
 double distanceToSegment(const QPointF& p, const QPointF& a, const QPointF& b) {
@@ -176,6 +177,22 @@ std::optional<quint64> SceneView::pick(const QPointF& position, double radius) c
   return best;
 }
 
+SceneSight SceneView::sightAt(const QPointF& position) const {
+  vtkCamera* camera = m_vtk->renderer->GetActiveCamera();
+  const double aspect = height() > 0 ? static_cast<double>(width()) / height() : 1;
+  const double x = 2 * position.x() / std::max(1, width()) - 1, y = 1 - 2 * position.y() / std::max(1, height());
+  vtkNew<vtkMatrix4x4> back;
+  vtkMatrix4x4::Invert(camera->GetCompositeProjectionTransformMatrix(aspect, -1, 1), back);
+  const auto at = [&](double depth) {
+    const double clip[4] = {x, y, depth, 1};
+    double world[4];
+    back->MultiplyPoint(clip, world);
+    return Eigen::Vector3d(world[0] / world[3], world[1] / world[3], world[2] / world[3]);
+  };
+  const Eigen::Vector3d near = at(-1);
+  return {near, (at(1) - near).normalized(), camera->GetViewAngle() * kRadiansPerDegree / std::max(1, height())};
+}
+
 bool SceneView::eventFilter(QObject* watched, QEvent* event) {
   switch (event->type()) {
     case QEvent::MouseButtonPress: m_press = static_cast<QMouseEvent*>(event)->localPos(); break;
@@ -192,6 +209,7 @@ bool SceneView::eventFilter(QObject* watched, QEvent* event) {
       const QPointF moved = mouse->localPos() - m_press;
       if (mouse->button() == Qt::LeftButton && std::hypot(moved.x(), moved.y()) <= kClickSlack) {
         Q_EMIT picked(pick(mouse->localPos()).value_or(0));
+        Q_EMIT clicked(mouse->localPos());
       }
       requestRender();
       break;

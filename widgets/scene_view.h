@@ -31,6 +31,12 @@ struct Pickable {
   std::vector<Eigen::Vector3d> points;
 };
 
+/// From the eye through a position in the window.
+struct SceneSight {
+  Eigen::Vector3d from, along;                     ///< World frame; `along` is a unit vector.
+  double radians_per_pixel = 0;                    ///< Of the screen, in the middle of the view.
+};
+
 /// Renders when asked, at most 30 times a second and never more than a third of the time, and never by itself.  Left drag orbits, middle or Shift drag
 /// pans, wheel or right drag zooms; a click without a drag picks.  GUI thread only.
 class SceneView final : public QWidget {
@@ -56,6 +62,7 @@ class SceneView final : public QWidget {
   std::optional<QPointF> widgetOfPoint(const Eigen::Vector3d& p_W) const;
   /// The pickable within `radius` screen pixels of a position that is nearest to it.
   std::optional<quint64> pick(const QPointF& position, double radius = 12) const;
+  SceneSight sightAt(const QPointF& position) const;
   QSize sizeHint() const override { return {420, 420}; }
 
  public Q_SLOTS:
@@ -66,6 +73,7 @@ class SceneView final : public QWidget {
 
  Q_SIGNALS:
   void picked(quint64 id);                         ///< 0: nothing there.
+  void clicked(const QPointF& position);           ///< At the same time: a click without a drag.
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

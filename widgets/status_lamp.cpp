@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <QMouseEvent>
 #include <QPainter>
 
 namespace longarm::widgets {
@@ -40,38 +41,45 @@ QSize StatusLamp::sizeHint() const {
   return {static_cast<int>(kShape + kGap) + text + 4, std::max(20, fontMetrics().height() + 4)};
 }
 
+void StatusLamp::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton && rect().contains(event->pos())) Q_EMIT clicked();
+}
+
 void StatusLamp::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
-  const QRectF shape(1, (height() - kShape) / 2, kShape, kShape);
+  paintShape(painter, {1, (height() - kShape) / 2, kShape, kShape}, m_level, m_theme);
+  painter.setPen(m_theme.text);
+  painter.drawText(QRectF(kShape + kGap, 0, width() - kShape - kGap, height()), Qt::AlignVCenter | Qt::AlignLeft, m_text);
+}
+
+void StatusLamp::paintShape(QPainter& painter, const QRectF& shape, Level level, const Theme& theme) {
   painter.setPen(Qt::NoPen);
-  switch (m_level) {
+  switch (level) {
     case Level::kOk:
-      painter.setBrush(m_theme.muted);
+      painter.setBrush(theme.muted);
       painter.drawEllipse(shape.adjusted(2, 2, -2, -2));
       break;
     case Level::kBusy:
-      painter.setPen(QPen(m_theme.role(vision::OverlayRole::kSelected).color, 3));
+      painter.setPen(QPen(theme.role(vision::OverlayRole::kSelected).color, 3));
       painter.drawEllipse(shape.adjusted(2, 2, -2, -2));
       break;
     case Level::kDegraded: {
-      painter.setBrush(m_theme.amber);
+      painter.setBrush(theme.amber);
       painter.drawPolygon(QVector<QPointF>{{shape.center().x(), shape.top()}, shape.bottomRight(), shape.bottomLeft()});
       break;
     }
     case Level::kLost:
-      painter.setPen(QPen(m_theme.magenta, 3, Qt::SolidLine, Qt::RoundCap));
+      painter.setPen(QPen(theme.magenta, 3, Qt::SolidLine, Qt::RoundCap));
       painter.drawLine(shape.adjusted(2, 2, -2, -2).topLeft(), shape.adjusted(2, 2, -2, -2).bottomRight());
       painter.drawLine(shape.adjusted(2, 2, -2, -2).topRight(), shape.adjusted(2, 2, -2, -2).bottomLeft());
       break;
     case Level::kFault:
-      painter.setBrush(m_theme.stop);
-      painter.setPen(QPen(m_theme.on_stop, 1));
+      painter.setBrush(theme.stop);
+      painter.setPen(QPen(theme.on_stop, 1));
       painter.drawRect(shape.adjusted(1, 1, -1, -1));
       break;
   }
-  painter.setPen(m_theme.text);
-  painter.drawText(QRectF(kShape + kGap, 0, width() - kShape - kGap, height()), Qt::AlignVCenter | Qt::AlignLeft, m_text);
 }
 
 }  // namespace longarm::widgets

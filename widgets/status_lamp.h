@@ -24,11 +24,17 @@ class StatusLamp final : public QWidget {
   QString text() const { return m_text; }
   /// Keeps this much room for text whatever it says, so that the strip does not jump.
   void setReserve(const QString& widest);
+  /// The shape alone, filling a square.
+  static void paintShape(QPainter& painter, const QRectF& square, Level level, const Theme& theme);
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return sizeHint(); }
 
+ Q_SIGNALS:
+  void clicked();                          ///< For those that lead somewhere.
+
  protected:
   void paintEvent(QPaintEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
 
  private:
   Theme m_theme = Theme::dark();

@@ -3,6 +3,7 @@
 
 #include "app/verbs/board_images.h"
 #include "app/verbs/calibrate_verbs.h"
+#include "calibration/intrinsics/picture_pairs.h"
 #include "calibration/intrinsics/stereo_pair.h"
 #include "core/text.h"
 
@@ -26,24 +27,6 @@ bool isCameraFile(const std::string& path) {
   return false;
 }
 
-std::string digitsOf(const std::string& path) {
-  const auto slash = path.find_last_of('/');
-  std::string out;
-  for (const char c : path.substr(slash == std::string::npos ? 0 : slash + 1)) {
-    if (c >= '0' && c <= '9') out += c;
-  }
-  return out;
-}
-
-// Pictures alternate left, right; or all left ones come first: told from the numbers in their names.
-std::vector<std::size_t> leftIndices(const std::vector<std::string>& images) {
-  const std::size_t n = images.size() / 2;
-  const bool alternate = n == 1 || digitsOf(images[0]) == digitsOf(images[1]) || digitsOf(images[0]) != digitsOf(images[n]);
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < n; ++k) out.push_back(alternate ? 2 * k : k);
-  return out;
-}
-
 // Camera files may stand before the pictures instead of after --left and --right.
 Status sortArguments(Options* options) {
   auto& images = options->board.images;
@@ -55,9 +38,6 @@ Status sortArguments(Options* options) {
     }
     *camera = images.front();
     images.erase(images.begin());
-  }
-  if (images.empty() || images.size() % 2 != 0) {
-    return {ErrorCode::kInvalidInput, std::to_string(images.size()) + " pictures were given; expected pairs: left01 right01 left02 right02 ..., or all left and then all right ones"};
   }
   return {};
 }
@@ -83,11 +63,11 @@ Result<BoardImages> detectSide(const Options& options, const std::vector<std::st
 Result<Input> readPairs(const Options& options, const vision::CameraFile& left, const vision::CameraFile& right) {
   const auto& images = options.board.images;
   std::vector<std::string> lefts, rights;
-  const auto index = leftIndices(images);
-  const std::size_t step = index.size() > 1 && index[1] == 1 ? index.size() : 1;
-  for (const std::size_t i : index) {
-    lefts.push_back(images[i]);
-    rights.push_back(images[i + step]);
+  const auto index = calibration::pairPictures(images);
+  if (!index) return index.error();
+  for (const auto& [left_picture, right_picture] : *index) {
+    lefts.push_back(images[left_picture]);
+    rights.push_back(images[right_picture]);
   }
   const auto l = detectSide(options, lefts, left.camera, options.left), r = detectSide(options, rights, right.camera, options.right);
   if (!l) return l.error();

@@ -179,6 +179,11 @@ Result<BoardKind> boardKindFromText(const std::string& text) {
   return Error{ErrorCode::kInvalidInput, "--board-kind: \"" + text.substr(0, 40) + "\" is unknown; expected chessboard, charuco or circles"};
 }
 
+bool sameBoard(const BoardSpec& a, const BoardSpec& b) {
+  return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows && a.square == b.square && a.marker == b.marker &&
+         a.half_window == b.half_window;
+}
+
 std::vector<Eigen::Vector3d> boardPoints(const BoardSpec& spec) {
   std::vector<Eigen::Vector3d> out;
   for (int r = 0; r < spec.rows; ++r) {

@@ -28,6 +28,7 @@ struct BoardSpec {
   /// neighbour.  A window that reaches the neighbours pulls corners off by pixels.
   int half_window = 0;
 };
+bool sameBoard(const BoardSpec& a, const BoardSpec& b);
 
 /// The places of all corners: row by row, x along a row, z = 0.
 std::vector<Eigen::Vector3d> boardPoints(const BoardSpec& spec);

@@ -1,6 +1,9 @@
 #include "calibration/pose/next_point.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -29,7 +32,48 @@ double logDeterminant(const Matrix6d& information) {
   return sum;
 }
 
+Matrix6d informationOf(const vision::CameraModel& camera, const std::vector<PoseObservation>& observations, const Pose& T, int* seen) {
+  Matrix6d sum = Matrix6d::Zero();
+  *seen = 0;
+  for (const auto& o : observations) {
+    const auto more = informationOf(camera, o, T);
+    if (!more) continue;
+    sum += *more;
+    ++*seen;
+  }
+  return sum;
+}
+
+// 1 sigma of turn and shift.
+std::pair<double, double> spread(const Matrix6d& information, double sigma_px) {
+  const Matrix6d C = sigma_px * sigma_px * information.inverse();
+  return {std::sqrt(C.topLeftCorner<3, 3>().trace()), std::sqrt(C.bottomRightCorner<3, 3>().trace())};
+}
+
 }  // namespace
+
+std::optional<NextPicture> nextPicture(const vision::CameraModel& camera, const std::vector<PoseObservation>& have,
+                                       const std::vector<std::vector<PoseObservation>>& candidates, const Pose& T, int most, double sigma_px) {
+  int seen = 0;
+  const Matrix6d now = informationOf(camera, have, T, &seen);
+  if (seen < 3 || Eigen::SelfAdjointEigenSolver<Matrix6d>(now, Eigen::EigenvaluesOnly).eigenvalues()[0] <= 0) return std::nullopt;
+  std::optional<NextPicture> best;
+  double gain = logDeterminant(now);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    int points = 0;
+    const Matrix6d all = informationOf(camera, candidates[i], T, &points);
+    if (points == 0) continue;
+    const Matrix6d after = now + all * (std::min(points, most) / static_cast<double>(points));
+    const double value = logDeterminant(after);
+    if (value <= gain) continue;
+    gain = value;
+    NextPicture next{i, points, 0, 0, 0, 0};
+    std::tie(next.turn_before, next.shift_before) = spread(now, sigma_px);
+    std::tie(next.turn_after, next.shift_after) = spread(after, sigma_px);
+    best = next;
+  }
+  return best;
+}
 
 std::optional<std::size_t> nextPoint(const vision::CameraModel& camera, const std::vector<PoseObservation>& have,
                                      const std::vector<PoseObservation>& candidates, const Pose& T) {

@@ -15,6 +15,7 @@ namespace longarm::calibration {
 namespace {
 
 constexpr double kClickSigma = 0.7;        // of a pick by hand [px]
+constexpr double kSameAnswer_rad = 0.0175;
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 std::size_t indexOf(LoopUnknown unknown) {
@@ -191,10 +192,11 @@ void addAlternatives(const LoopOptions& options, const LoopStarts& starts, const
   if (poses.size() != 1 || options.unknowns.size() != 1 || starts.minima.size() < 2) return;
   const int n = std::max(1, solved.model.observations());
   const double best = starts.minima.front().cost, variance = std::max(out->sigma_px * out->sigma_px, 1e-6);
-  for (std::size_t i = 1; i < starts.minima.size(); ++i) {
-    if (starts.minima[i].cost - best > 10 * variance) break;
-    const Pose T = poses.front() == LoopUnknown::kObj ? starts.minima[i].T.inverse() : starts.minima[i].T;
-    out->alternatives.push_back({T, std::sqrt(starts.minima[i].cost / (2.0 * n))});
+  const Pose answer = out->T[indexOf(poses.front())];
+  for (const auto& minimum : starts.minima) {
+    if (minimum.cost - best > 10 * variance) break;
+    const Pose T = poses.front() == LoopUnknown::kObj ? minimum.T.inverse() : minimum.T;
+    if (angleBetween(T.linear(), answer.linear()) > kSameAnswer_rad) out->alternatives.push_back({T, std::sqrt(minimum.cost / (2.0 * n))});
   }
   if (!out->alternatives.empty()) {
     out->warnings.push_back("ambiguous: " + std::to_string(out->alternatives.size()) + " other pose(s) fit as well (see alternatives); "
@@ -246,8 +248,12 @@ Result<LoopResult> solveLoop(const LoopProblem& problem, const LoopOptions& opti
   const auto poses = unknownPoses(options);
   const bool lens = poses.size() < options.unknowns.size();
   if (auto status = requireEnough(problem, 6 * static_cast<int>(poses.size()) + (lens ? 4 : 0)); !status) return status.error();
-  const auto starts = loopStarts(problem, options);
+  auto starts = loopStarts(problem, options);
   if (!starts) return explainMisfit(problem, options, starts.error());
+  if (options.chosen && poses.size() == 1 && !lens) {
+    starts->states.resize(1);
+    starts->states.front().T[indexOf(poses.front())] = poses.front() == LoopUnknown::kObj ? Pose(options.chosen->inverse()) : *options.chosen;
+  }
   const double sigma = options.kin_prior ? options.sigma_px.value_or(0.5) : 1;
   auto solved = solveFromAll(problem, options, *starts, sigma);
   if (!solved) {

@@ -22,6 +22,9 @@ struct LoopOptions {
   std::vector<LoopUnknown> unknowns;       ///< The first is the one asked for.
   /// Starts of T_ext, T_dev, T_obj; one more start beside those found from nothing, never the only one.
   std::array<std::optional<Pose>, 3> starts;
+  /// Of several poses that fit, the one that the operator recognised: the answer is the optimum beside it, and the others are
+  /// the alternatives.  For a single unknown transform only; as LoopResult::T.
+  std::optional<Pose> chosen;
   bool has_camera_start = true;            ///< Whether LoopProblem::camera holds intrinsics.
   std::optional<double> sigma_px;          ///< Pick noise per axis; else estimated from the residuals [px].
   std::optional<KinPrior> kin_prior;       ///< Lets T_kin of each view err; needs sigma_px (0.5 otherwise).

@@ -46,6 +46,13 @@ Result<int> RobotModel::jointIndex(const std::string& name) const {
   return indexByName(m_joints, name, "joint", m_name);
 }
 
+std::shared_ptr<const RobotModel> RobotModel::withJointPose(int joint, const Pose& X_PJ) const {
+  LONGARM_REQUIRE(joint >= 0 && joint < static_cast<int>(m_joints.size()), "no joint of this robot");
+  auto changed = std::shared_ptr<RobotModel>(new RobotModel(*this));
+  changed->m_joints[static_cast<std::size_t>(joint)].X_PJ = X_PJ;
+  return changed;
+}
+
 Result<JointGroup> RobotModel::chain(const std::string& base_link, const std::string& tip_link) const {
   const auto base = linkIndex(base_link);
   if (!base) return base.error();

@@ -75,6 +75,8 @@ class RobotModel {
   const std::vector<Joint>& joints() const { return m_joints; }
   const std::vector<std::string>& warnings() const { return m_warnings; }   ///< Missing meshes and such.
   int rootLink() const { return m_root; }
+  /// The same robot, one of whose joints sits elsewhere in its parent link.  @pre joint is an index of joints()
+  std::shared_ptr<const RobotModel> withJointPose(int joint, const Pose& X_PJ) const;
   Result<int> linkIndex(const std::string& name) const;
   Result<int> jointIndex(const std::string& name) const;
   int dof() const { return static_cast<int>(m_actuated.size()); }

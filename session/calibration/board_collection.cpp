@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "vision/snapshot/image_file.h"
 
 namespace longarm::session {
 
@@ -11,6 +12,21 @@ namespace {
 std::string sizeText(const cv::Mat& image) { return std::to_string(image.cols) + " x " + std::to_string(image.rows); }
 
 }  // namespace
+
+Result<BoardPicture> searchedPicture(const std::string& name, const cv::Mat& image, const calibration::BoardSpec& spec, bool live) {
+  BoardPicture out;
+  out.name = name;
+  out.image = image;
+  if (image.empty()) {
+    auto read = vision::loadImage(name);
+    if (!read) return read.error();
+    out.image = std::move(*read);
+  }
+  auto view = live ? calibration::detectBoardLive(out.image, spec, name) : calibration::detectBoard(out.image, spec, name);
+  if (view) out.view = std::move(*view);
+  else out.why = view.error().message;
+  return out;
+}
 
 Status BoardCollection::add(BoardPicture picture) {
   if (m_pictures.size() >= kMost) {

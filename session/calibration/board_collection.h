@@ -26,6 +26,10 @@ struct BoardPicture {
   bool included = true;                            ///< The operator's choice.
 };
 
+/// Searches a picture for the board; an empty image is read from the file of this name first.
+/// @param live Quickly, as detectBoardLive.  @returns as loadImage; a picture without a board is no error.
+Result<BoardPicture> searchedPicture(const std::string& name, const cv::Mat& image, const calibration::BoardSpec& spec, bool live);
+
 /// Plain value; pictures keep their order.
 class BoardCollection {
  public:

@@ -1,11 +1,13 @@
 #include "session/calibration/calibration_controller.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QStandardPaths>
 
 #include "core/clock.h"
 #include "core/text.h"
+#include "session/calibration/solve_again.h"
 
 namespace longarm::session {
 
@@ -35,6 +37,18 @@ Eigen::MatrixXd joined(const vision::CameraFile& file, const CameraChange& chang
 
 }  // namespace
 
+Result<int> panJointOf(const planning::Workcell& workcell, const std::string& pan_tilt) {
+  for (const auto& unit : workcell.pan_tilts) {
+    if (unit.name == pan_tilt) return workcell.model->jointIndex(unit.pan_joint);
+  }
+  return Error{ErrorCode::kNotFound, "The workcell has no pan-tilt \"" + pan_tilt + "\"."};
+}
+
+std::optional<double> mountUncertainty(const vision::CameraFile& file) {
+  if (!file.covariance || file.covariance->rows() != 16 || file.covariance->bottomRightCorner<6, 6>().isZero(0)) return std::nullopt;
+  return std::sqrt(std::max(0.0, file.covariance->bottomRightCorner<6, 6>().trace()));
+}
+
 std::optional<double> meanUncertainty(const vision::CameraFile& file) {
   if (!file.covariance || file.covariance->topLeftCorner<10, 10>().isZero(0)) return std::nullopt;
   const auto map = calibration::lensUncertainty(file.camera, file.covariance->topLeftCorner<10, 10>(), 17, 13);
@@ -42,7 +56,7 @@ std::optional<double> meanUncertainty(const vision::CameraFile& file) {
 }
 
 CalibrationController::CalibrationController(Document& document, JobRunner& jobs, const QString& library_folder, QObject* parent)
-    : QObject(parent), m_document(document), m_library(folderOf(library_folder)), m_intrinsics(jobs) {}
+    : QObject(parent), m_document(document), m_jobs(jobs), m_library(folderOf(library_folder)), m_intrinsics(jobs) {}
 
 std::shared_ptr<const planning::Workcell> CalibrationController::workcellInUse() const {
   if (!m_plain) return nullptr;
@@ -55,9 +69,16 @@ std::shared_ptr<const planning::Workcell> CalibrationController::workcellInUse()
     any = true;
   }
   for (auto& object : changed->objects) {
-    const auto placed = m_placed.find(object.name);
-    if (placed == m_placed.end()) continue;
-    object.X_WO = placed->second;
+    const auto placed = placementInUse(Subject::kObject, object.name);
+    if (!placed) continue;
+    object.X_WO = placed->pose.pose;
+    any = true;
+  }
+  for (const auto& unit : changed->pan_tilts) {
+    const auto placed = placementInUse(Subject::kPanTilt, unit.name);
+    const auto joint = panJointOf(*changed, unit.name);
+    if (!placed || !joint) continue;
+    changed->model = changed->model->withJointPose(*joint, placed->pose.pose);
     any = true;
   }
   return any ? changed : m_plain;
@@ -99,31 +120,82 @@ Result<vision::CameraFile> CalibrationController::changed(const CameraChange& ch
   return out;
 }
 
+std::optional<CalibrationRecord> CalibrationController::recordInUse(Subject subject, const std::string& name) const {
+  if (!m_plain) return std::nullopt;
+  return m_library.find(m_library.inUse(m_plain->name, name, subject));
+}
+
+std::optional<Placement> CalibrationController::placementInUse(Subject subject, const std::string& name) const {
+  const auto record = recordInUse(subject, name);
+  if (!record) return std::nullopt;
+  auto placement = readPlacement(record->file);
+  return placement ? std::optional<Placement>(std::move(*placement)) : std::nullopt;
+}
+
+Result<Placement> CalibrationController::placementOf(Subject subject, const std::string& name, const std::string& id) const {
+  if (const auto record = m_library.find(id)) return readPlacement(record->file);
+  if (!knows(subject, name)) return Error{ErrorCode::kNotFound, std::string("The workcell has no ") + toString(subject) + " \"" + name + "\"."};
+  Placement own;
+  for (const auto& object : m_plain->objects) {
+    if (subject == Subject::kObject && object.name == name) own.pose = {object.attached_link, object.X_WO};
+  }
+  if (subject == Subject::kPanTilt) {
+    const auto index = panJointOf(*m_plain, name);
+    if (!index) return index.error();
+    const auto& joint = m_plain->model->joints()[static_cast<std::size_t>(*index)];
+    own.pose = {m_plain->model->links()[static_cast<std::size_t>(joint.parent_link)].name, joint.X_PJ};
+  }
+  return own;
+}
+
+bool CalibrationController::knows(Subject subject, const std::string& name) const {
+  if (!m_plain) return false;
+  if (subject == Subject::kCamera) return m_plain->camera(name) != nullptr;
+  const auto named = [&](const auto& each) { return each.name == name; };
+  if (subject == Subject::kObject) return std::any_of(m_plain->objects.begin(), m_plain->objects.end(), named);
+  return std::any_of(m_plain->pan_tilts.begin(), m_plain->pan_tilts.end(), named);
+}
+
+QString CalibrationController::whyWorse(const PlaceChange& change) const {
+  const auto now = placementInUse(change.subject, change.name);
+  if (!now || change.placement.uncertaintyAtOneMetre() <= kWorse * now->uncertaintyAtOneMetre()) return {};
+  return tr("Less certain than the placement in use: %1 mm against %2 mm one metre from its origin.")
+      .arg(QString::number(1000 * change.placement.uncertaintyAtOneMetre(), 'f', 2), QString::number(1000 * now->uncertaintyAtOneMetre(), 'f', 2));
+}
+
 QString CalibrationController::whyWorse(const CameraChange& change) const {
-  if (!change.lens) return {};
   const auto now = fileInUse(change.camera), then = changed(change);
   if (!now || !then) return {};
+  if (!change.lens) {
+    const auto a = mountUncertainty(*now), b = mountUncertainty(*then);
+    if (!a || !b || *b <= kWorse * *a) return {};
+    return tr("Less certain than the mount in use: %1 mm against %2 mm one metre before the camera.")
+        .arg(QString::number(1000 * *b, 'f', 2), QString::number(1000 * *a, 'f', 2));
+  }
   const auto a = meanUncertainty(*now), b = meanUncertainty(*then);
   if (!a || !b || *b <= kWorse * *a) return {};
   return tr("Less certain than the calibration in use: %1 px against %2 px on average over the picture.")
       .arg(QString::number(*b, 'f', 3), QString::number(*a, 'f', 3));
 }
 
-Status CalibrationController::apply(const CameraChange& change) {
+Result<CalibrationRecord> CalibrationController::keep(const CameraChange& change) {
   const auto file = changed(change);
   if (!file) return file.error();
   CalibrationRecord record;
   record.workcell = m_plain ? m_plain->name : std::string();
-  record.camera = change.camera;
+  record.name = change.camera;
   record.kind = change.kind;
   record.note = change.note;
   record.wall_time_s = wallTime_s();
   record.observations = change.observations;
   record.rms_px = change.rms_px;
   record.uncertainty_px = meanUncertainty(*file).value_or(-1);
-  const auto kept = m_library.add(record, *file, change.raw, change.raw_ending);
-  if (!kept) return kept.error();
-  return use(change.camera, kept->id);
+  return m_library.add(record, *file, change.raw, change.raw_ending);
+}
+
+Status CalibrationController::apply(const CameraChange& change) {
+  const auto kept = keep(change);
+  return kept ? use(change.camera, kept->id) : Status(kept.error());
 }
 
 Status CalibrationController::use(const std::string& camera, const std::string& id) {
@@ -134,13 +206,51 @@ Status CalibrationController::use(const std::string& camera, const std::string& 
   return {};
 }
 
-Status CalibrationController::placeObject(const std::string& object, const Pose& X_WO) {
-  const auto known = [&](const planning::WorldObject& each) { return each.name == object; };
-  if (!m_plain || std::none_of(m_plain->objects.begin(), m_plain->objects.end(), known)) {
-    return {ErrorCode::kNotFound, "The workcell has no object \"" + object + "\"."};
+Result<CalibrationRecord> CalibrationController::keep(const PlaceChange& change) {
+  if (!knows(change.subject, change.name)) {
+    return Error{ErrorCode::kNotFound, std::string("The workcell has no ") + toString(change.subject) + " \"" + change.name + "\"."};
   }
-  m_placed[object] = X_WO;
-  Q_EMIT objectPlaced(QString::fromStdString(object));
+  CalibrationRecord record;
+  record.workcell = m_plain->name;
+  record.subject = change.subject;
+  record.name = change.name;
+  record.kind = "pose";
+  record.note = change.note;
+  record.wall_time_s = wallTime_s();
+  record.observations = change.observations;
+  record.rms_px = change.rms_px;
+  return m_library.add(record, change.placement, change.raw, change.raw_ending);
+}
+
+Status CalibrationController::apply(const PlaceChange& change) {
+  const auto kept = keep(change);
+  return kept ? usePlacement(change.subject, change.name, kept->id) : Status(kept.error());
+}
+
+void CalibrationController::solveAgain(const std::string& id) {
+  const auto record = m_library.find(id);
+  if (!record) {
+    Q_EMIT failed(tr("There is no such calibration in the library."));
+    return;
+  }
+  m_jobs.run<SolvedAgain>(
+      this, [record = *record] { return session::solveAgain(record); },
+      [this](Result<SolvedAgain> solved) {
+        auto kept = !solved ? Result<CalibrationRecord>(solved.error()) : solved->camera ? keep(*solved->camera) : keep(*solved->place);
+        if (!kept) {
+          Q_EMIT failed(QString::fromStdString(kept.error().message));
+          return;
+        }
+        Q_EMIT libraryChanged();
+        Q_EMIT solvedAgain(QString::fromStdString(kept->id));
+      });
+}
+
+Status CalibrationController::usePlacement(Subject subject, const std::string& name, const std::string& id) {
+  if (!knows(subject, name)) return {ErrorCode::kNotFound, std::string("The workcell has no ") + toString(subject) + " \"" + name + "\"."};
+  if (const Status set = m_library.setInUse(m_plain->name, name, id, subject); !set) return set;
+  Q_EMIT libraryChanged();
+  Q_EMIT placed(QString::fromStdString(name));
   return {};
 }
 

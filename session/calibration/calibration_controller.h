@@ -3,32 +3,18 @@
 /// @file
 /// CalibrationController: what the wizards share: the library, and which calibration each camera uses.
 
-#include <map>
 #include <memory>
 #include <optional>
 
 #include <QObject>
 #include <QString>
 
+#include "session/calibration/calibration_change.h"
 #include "session/calibration/camera_library.h"
 #include "session/calibration/intrinsics_controller.h"
 #include "session/document/document.h"
 
 namespace longarm::session {
-
-/// What a calibration found out about one camera; what is empty stays as it is.
-struct CameraChange {
-  std::string camera;                              ///< Of the workcell.
-  std::string kind;                                ///< As CalibrationRecord::kind.
-  std::string note;
-  std::optional<vision::CameraModel> lens;
-  Eigen::Matrix<double, 10, 10> lens_covariance = Eigen::Matrix<double, 10, 10>::Zero();
-  std::optional<Pose> X_LC;                        ///< Optical frame in the camera's link.
-  Matrix6d pose_covariance = Matrix6d::Zero();     ///< Of its split increment.
-  int observations = 0;
-  double rms_px = 0;
-  std::string raw, raw_ending;                     ///< What it was made from, as text; "csv", "json".
-};
 
 /// Accepted calibrations live in the library, not in the workcell's files: those are what the integrator wrote, and can
 /// always be gone back to.  GUI thread only.
@@ -55,29 +41,50 @@ class CalibrationController final : public QObject {
   std::optional<CalibrationRecord> recordInUse(const std::string& camera) const;
   /// The camera file that a change would give.  @returns kInvalidInput: the picture's size differs; as fileInUse.
   Result<vision::CameraFile> changed(const CameraChange& change) const;
+  /// The placement in use; empty: the workcell's own files say where it stands.
+  std::optional<CalibrationRecord> recordInUse(Subject subject, const std::string& name) const;
+  /// Where a record (empty: the workcell's own files) has a pan-tilt or an object stand.  @returns kNotFound; as readPlacement.
+  Result<Placement> placementOf(Subject subject, const std::string& name, const std::string& id) const;
   /// A sentence when the change is less certain than what is in use; else empty.
   QString whyWorse(const CameraChange& change) const;
+  QString whyWorse(const PlaceChange& change) const;
 
   /// Keeps it in the library and uses it from now on; snapshots keep the camera they were taken with.
   Status apply(const CameraChange& change);
   /// Uses a record of the library; empty id: the workcell's own file.
   Status use(const std::string& camera, const std::string& id);
-  /// An object of the workcell stands elsewhere than its file says, until the window is closed.  kNotFound.
-  Status placeObject(const std::string& object, const Pose& X_WO);
+  /// Keeps in the library where something stands and uses it from now on.  @returns kNotFound, or as CameraLibrary::add.
+  Status apply(const PlaceChange& change);
+  /// Makes a calibration of the library anew from its raw data, off the GUI thread, and keeps the answer beside it, not in use.
+  /// Ends in solvedAgain() or failed().
+  void solveAgain(const std::string& id);
+  Status usePlacement(Subject subject, const std::string& name, const std::string& id);
 
  Q_SIGNALS:
   void applied(const QString& camera);             ///< workcellInUse() is another.
-  void objectPlaced(const QString& object);        ///< So it is here.
+  void placed(const QString& name);                ///< So it is here.
   void libraryChanged();
+  void solvedAgain(const QString& id);
+  void failed(const QString& sentence);
 
  private:
+  std::optional<Placement> placementInUse(Subject subject, const std::string& name) const;
+  bool knows(Subject subject, const std::string& name) const;
+
+  Result<CalibrationRecord> keep(const CameraChange& change);
+  Result<CalibrationRecord> keep(const PlaceChange& change);
+
   Document& m_document;
+  JobRunner& m_jobs;
   CameraLibrary m_library;
   std::shared_ptr<const planning::Workcell> m_plain;
-  std::map<std::string, Pose> m_placed;            // objects by name
   IntrinsicsController m_intrinsics;
 };
 
+/// Index of a pan-tilt's first joint.  @returns kNotFound.
+Result<int> panJointOf(const planning::Workcell& workcell, const std::string& pan_tilt);
+/// 1 sigma of a camera's mount, of a place one metre before it [m]; empty: the file does not say.
+std::optional<double> mountUncertainty(const vision::CameraFile& file);
 /// Mean uncertainty of a camera file's lens over the picture [px]; empty when the file has no covariance or size.
 std::optional<double> meanUncertainty(const vision::CameraFile& file);
 

@@ -17,7 +17,9 @@ using nlohmann::json;
 constexpr const char* kRecordFile = "record.json";
 constexpr const char* kInUseFile = "in_use.json";
 
-std::string keyOf(const std::string& workcell, const std::string& camera) { return workcell + "/" + camera; }
+std::string keyOf(const std::string& workcell, const std::string& name, Subject subject) {
+  return workcell + "/" + (subject == Subject::kCamera ? name : std::string(toString(subject)) + ":" + name);
+}
 
 // Names come from files: nothing of them may lead out of the folder.
 std::string safe(const std::string& name) {
@@ -30,7 +32,7 @@ std::string safe(const std::string& name) {
 }
 
 json jsonOf(const CalibrationRecord& record) {
-  return {{"workcell", record.workcell}, {"camera", record.camera}, {"kind", record.kind}, {"wall_time", record.wall_time_s},
+  return {{"workcell", record.workcell}, {"subject", toString(record.subject)}, {"name", record.name}, {"kind", record.kind}, {"wall_time", record.wall_time_s},
           {"observations", record.observations}, {"rms_px", record.rms_px}, {"uncertainty_px", record.uncertainty_px},
           {"note", record.note}, {"file", fs::path(record.file).filename().string()}, {"raw", fs::path(record.raw).filename().string()}};
 }
@@ -43,7 +45,11 @@ std::optional<CalibrationRecord> recordFrom(const fs::path& folder) {
     CalibrationRecord out;
     out.id = folder.filename().string();
     out.workcell = value.at("workcell");
-    out.camera = value.at("camera");
+    const std::string subject = value.value("subject", toString(Subject::kCamera));   // the first records were cameras' alone
+    for (const Subject each : {Subject::kPanTilt, Subject::kObject}) {
+      if (subject == toString(each)) out.subject = each;
+    }
+    out.name = value.contains("name") ? value.at("name") : value.at("camera");
     out.kind = value.at("kind");
     out.wall_time_s = value.at("wall_time");
     out.observations = value.at("observations");
@@ -64,6 +70,15 @@ bool older(const CalibrationRecord& a, const CalibrationRecord& b) {
 }
 
 }  // namespace
+
+const char* toString(Subject subject) {
+  switch (subject) {
+    case Subject::kCamera: return "camera";
+    case Subject::kPanTilt: return "pan_tilt";
+    case Subject::kObject: return "object";
+  }
+  return "";
+}
 
 CameraLibrary::CameraLibrary(std::string folder) : m_folder(std::move(folder)) { read(); }
 
@@ -88,10 +103,10 @@ void CameraLibrary::read() {
   }
 }
 
-std::vector<CalibrationRecord> CameraLibrary::records(const std::string& workcell, const std::string& camera) const {
+std::vector<CalibrationRecord> CameraLibrary::records(const std::string& workcell, const std::string& name, Subject subject) const {
   std::vector<CalibrationRecord> out;
   for (auto it = m_records.rbegin(); it != m_records.rend(); ++it) {
-    if (it->workcell == workcell && (camera.empty() || it->camera == camera)) out.push_back(*it);
+    if (it->workcell == workcell && it->subject == subject && it->name == name) out.push_back(*it);
   }
   return out;
 }
@@ -103,17 +118,37 @@ std::optional<CalibrationRecord> CameraLibrary::find(const std::string& id) cons
   return std::nullopt;
 }
 
-Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vision::CameraFile& file, const std::string& raw,
-                                             const std::string& raw_ending) {
-  const std::string stem = std::to_string(static_cast<long long>(record.wall_time_s)) + "-" + safe(record.camera) + "-" + safe(record.kind);
-  record.id = stem;
-  for (int n = 2; find(record.id) || fs::exists(fs::path(m_folder) / record.id); ++n) record.id = stem + "-" + std::to_string(n);
-  const fs::path folder = fs::path(m_folder) / record.id;
+Result<std::string> CameraLibrary::newFolder(CalibrationRecord* record) const {
+  const std::string stem = std::to_string(static_cast<long long>(record->wall_time_s)) + "-" + safe(record->name) + "-" + safe(record->kind);
+  record->id = stem;
+  for (int n = 2; find(record->id) || fs::exists(fs::path(m_folder) / record->id); ++n) record->id = stem + "-" + std::to_string(n);
+  const fs::path folder = fs::path(m_folder) / record->id;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return Error{ErrorCode::kInvalidInput, folder.string() + ": the folder cannot be made: " + error.message()};
-  record.file = (folder / "camera.yaml").string();
+  return folder.string();
+}
+
+Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vision::CameraFile& file, const std::string& raw,
+                                             const std::string& raw_ending) {
+  const auto folder = newFolder(&record);
+  if (!folder) return folder.error();
+  record.file = *folder + "/camera.yaml";
   if (const Status written = vision::writeCameraFile(record.file, file); !written) return written.error();
+  return keep(std::move(record), raw, raw_ending);
+}
+
+Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const Placement& placement, const std::string& raw,
+                                             const std::string& raw_ending) {
+  const auto folder = newFolder(&record);
+  if (!folder) return folder.error();
+  record.file = *folder + "/placement.json";
+  if (const Status written = writePlacement(record.file, placement); !written) return written.error();
+  return keep(std::move(record), raw, raw_ending);
+}
+
+Result<CalibrationRecord> CameraLibrary::keep(CalibrationRecord record, const std::string& raw, const std::string& raw_ending) {
+  const fs::path folder = fs::path(record.file).parent_path();
   if (!raw.empty()) {
     record.raw = (folder / ("raw." + safe(raw_ending))).string();
     if (const Status written = writeFileAtomically(record.raw, raw); !written) return written.error();
@@ -125,21 +160,21 @@ Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vis
   return record;
 }
 
-std::string CameraLibrary::inUse(const std::string& workcell, const std::string& camera) const {
+std::string CameraLibrary::inUse(const std::string& workcell, const std::string& name, Subject subject) const {
   for (const auto& [key, id] : m_in_use) {
-    if (key == keyOf(workcell, camera)) return id;
+    if (key == keyOf(workcell, name, subject)) return id;
   }
   return {};
 }
 
-Status CameraLibrary::setInUse(const std::string& workcell, const std::string& camera, const std::string& id) {
+Status CameraLibrary::setInUse(const std::string& workcell, const std::string& name, const std::string& id, Subject subject) {
   if (!id.empty() && !find(id)) return {ErrorCode::kNotFound, "There is no calibration \"" + id + "\" in " + m_folder + "."};
   auto in_use = m_in_use;
-  const std::string key = keyOf(workcell, camera);
+  const std::string key = keyOf(workcell, name, subject);
   in_use.erase(std::remove_if(in_use.begin(), in_use.end(), [&](const auto& entry) { return entry.first == key; }), in_use.end());
   if (!id.empty()) in_use.emplace_back(key, id);
   json value = json::object();
-  for (const auto& [name, chosen] : in_use) value[name] = chosen;
+  for (const auto& [label, chosen] : in_use) value[label] = chosen;
   std::error_code error;
   fs::create_directories(m_folder, error);
   if (const Status written = writeFileAtomically((fs::path(m_folder) / kInUseFile).string(), value.dump(2) + "\n"); !written) return written;

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "vision/camera/camera_file.h"
-#include "vision/snapshot/image_file.h"
 
 namespace longarm::session {
 
@@ -11,29 +10,12 @@ using calibration::BoardSpec;
 
 namespace {
 
-bool same(const BoardSpec& a, const BoardSpec& b) {
-  return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows && a.square == b.square && a.marker == b.marker &&
-         a.half_window == b.half_window;
-}
-
 // @param hint Look for boards of another size when this one is not there.
 Result<BoardPicture> search(const std::string& name, const cv::Mat& image, const BoardSpec& spec, bool hint) {
-  BoardPicture out;
-  out.name = name;
-  out.image = image;
-  if (image.empty()) {
-    auto read = vision::loadImage(name);
-    if (!read) return read.error();
-    out.image = std::move(*read);
-  }
-  auto view = calibration::detectBoard(out.image, spec, name);
-  if (view) {
-    out.view = std::move(*view);
-    return out;
-  }
-  out.why = view.error().message;
-  if (const std::string other = hint ? calibration::otherBoardHint(out.image, spec) : std::string(); !other.empty()) {
-    out.why += "; " + other;
+  auto out = searchedPicture(name, image, spec, false);
+  if (!out || out->view) return out;
+  if (const std::string other = hint ? calibration::otherBoardHint(out->image, spec) : std::string(); !other.empty()) {
+    out->why += "; " + other;
   }
   return out;
 }
@@ -45,7 +27,7 @@ IntrinsicsController::IntrinsicsController(JobRunner& jobs, QObject* parent) : Q
 }
 
 void IntrinsicsController::setBoard(const BoardSpec& board) {
-  if (same(board, m_board)) return;
+  if (calibration::sameBoard(board, m_board)) return;
   m_board = board;
   m_capture.reset();
   m_live.reset();

@@ -88,15 +88,6 @@ void addFeatures(const Document& document, std::vector<Landmark>* out) {
   }
 }
 
-void addBoxEdges(const Box& box, const Pose& X_WO, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>* out) {
-  const auto corners = boxCorners(box);
-  for (std::size_t i = 0; i < 8; ++i) {
-    for (const std::size_t bit : {1U, 2U, 4U}) {
-      if ((i & bit) == 0) out->emplace_back(X_WO * corners[i], X_WO * corners[i | bit]);
-    }
-  }
-}
-
 }  // namespace
 
 Result<Eigen::Vector3d> Landmark::inRoot(const planning::RobotModel& model, const Eigen::VectorXd& q) const {
@@ -112,22 +103,6 @@ std::vector<Landmark> landmarksOf(const planning::Workcell& workcell, const Docu
   for (const auto& object : workcell.objects) addCorners(object.name, object.attached_link, object.X_WO, object.shape, &out);
   addFeatures(document, &out);
   if (workcell.model) addLinks(workcell, &out);
-  return out;
-}
-
-std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> edgesOf(const planning::Workcell& workcell, const Eigen::VectorXd& q) {
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> out;
-  for (const auto& object : workcell.objects) {
-    const auto* box = std::get_if<Box>(&object.shape);
-    if (box == nullptr) continue;
-    Pose X_WL = Pose::Identity();
-    if (!object.attached_link.empty()) {
-      const auto link = workcell.model->linkIndex(object.attached_link);
-      if (!link) continue;
-      X_WL = workcell.model->forward(q, *link);
-    }
-    addBoxEdges(*box, X_WL * object.X_WO, &out);
-  }
   return out;
 }
 

@@ -28,7 +28,4 @@ struct Landmark {
 /// of the eight diagonal directions), the tool's tip, and vertices of measured features.
 std::vector<Landmark> landmarksOf(const planning::Workcell& workcell, const Document& document);
 
-/// Edges between corners of boxes, as pairs of places in the root frame: what is drawn over a picture to compare.
-std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> edgesOf(const planning::Workcell& workcell, const Eigen::VectorXd& q);
-
 }  // namespace longarm::session

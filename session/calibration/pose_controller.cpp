@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/pose/next_point.h"
-#include "session/calibration/pose_text.h"
 
 namespace longarm::session {
 
@@ -14,12 +12,26 @@ using vision::OverlayShape;
 
 namespace {
 
-constexpr double kClick_px = 0.7, kArrow = 10;
-constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kArrow = 10, kChord_px = 30;
+constexpr double kSamePlace_m = 0.001;
 constexpr std::size_t kLeast = 3;
 
 void add(vision::Overlay* overlay, OverlayShape::Kind kind, OverlayRole role, std::vector<Eigen::Vector2d> points, std::string text = {}) {
   overlay->shapes.push_back({kind, role, std::move(points), std::move(text)});
+}
+
+// An edge as the lens bends it; empty unless all of it is before the camera and some of it in the picture.
+std::vector<Eigen::Vector2d> drawn(const vision::View& view, const KnownGeometry::Segment& edge) {
+  const auto a = view.project(edge.first), b = view.project(edge.second);
+  if (!a || !b || (!view.camera.containsPixel(*a) && !view.camera.containsPixel(*b))) return {};
+  const int parts = std::clamp(static_cast<int>((*b - *a).norm() / kChord_px), 1, 12);
+  std::vector<Eigen::Vector2d> line;
+  for (int i = 0; i <= parts; ++i) {
+    const auto at = view.project(edge.first + (edge.second - edge.first) * i / parts);
+    if (!at) return {};
+    line.push_back(*at);
+  }
+  return line;
 }
 
 }  // namespace
@@ -27,6 +39,7 @@ void add(vision::Overlay* overlay, OverlayShape::Kind kind, OverlayRole role, st
 PoseController::PoseController(Document& document, CalibrationController& calibration, JobRunner& jobs, QObject* parent)
     : QObject(parent), m_document(document), m_calibration(calibration), m_jobs(jobs) {
   m_observer = m_document.observe([this](const Change& change) { documentChanged(change); });
+  refreshGeometry();
   restart();
 }
 
@@ -45,7 +58,8 @@ void PoseController::documentChanged(const Change& change) {
       Q_EMIT snapshotsChanged();
       restart();
       break;
-    case ChangeKind::kWorkcellChanged: refreshLandmarks(); restart(); break;
+    case ChangeKind::kWorkcellChanged: refreshMount(); refreshGeometry(); restart(); break;
+    case ChangeKind::kWorldChanged: refreshGeometry(); break;
     case ChangeKind::kItemAdded:
     case ChangeKind::kItemChanged:
     case ChangeKind::kItemRemoved: refreshLandmarks(); break;
@@ -68,6 +82,7 @@ const planning::WorldObject* PoseController::objectSpec() const {
 void PoseController::setCamera(const QString& camera) {
   if (camera.toStdString() == m_camera) return;
   m_camera = camera.toStdString();
+  refreshMount();
   m_snapshot = {};
   if (const auto all = snapshots(); !all.empty()) m_snapshot = all.back()->id;
   m_picks.clear();
@@ -114,15 +129,32 @@ bool PoseController::hangsOnPanTilt(const std::string& link) const {
   return false;
 }
 
+void PoseController::refreshMount() {
+  const auto file = m_calibration.fileInUse(m_camera);
+  m_X_LC = file && spec() != nullptr && file->pose && file->pose->parent == spec()->link ? file->pose->pose : Pose::Identity();
+}
+
+void PoseController::refreshGeometry() {
+  m_geometry = KnownGeometry(m_document.workcell(), m_document.world());
+  refreshLandmarks();
+}
+
+// An object is found by its own corners; everything else by what does not move with the camera.
+bool PoseController::serves(const std::string& thing, const std::string& link) const {
+  if (spec() == nullptr) return false;
+  if (m_unknown == Unknown::kObj) return objectSpec() != nullptr && thing == m_object;
+  return link != spec()->link && !hangsOnPanTilt(link);
+}
+
 void PoseController::refreshLandmarks() {
   const std::string chosen = m_landmark >= 0 && m_landmark < static_cast<int>(m_landmarks.size()) ? m_landmarks[static_cast<std::size_t>(m_landmark)].name : std::string();
   m_landmarks.clear();
   const auto& workcell = m_document.workcell();
   if (workcell && workcell->model && spec() != nullptr) {
-    for (auto& mark : landmarksOf(*workcell, m_document)) {
-      const bool of_object = m_unknown == Unknown::kObj;
-      // An object is found by its own corners; everything else by what does not move with the camera.
-      if (of_object ? mark.thing == m_object && objectSpec() != nullptr : mark.link != spec()->link && !hangsOnPanTilt(mark.link)) m_landmarks.push_back(std::move(mark));
+    auto all = landmarksOf(*workcell, m_document);
+    all.insert(all.end(), m_stuck.begin(), m_stuck.end());
+    for (auto& mark : all) {
+      if (serves(mark.thing, mark.link)) m_landmarks.push_back(std::move(mark));
     }
   }
   m_landmark = -1;
@@ -136,6 +168,47 @@ void PoseController::refreshLandmarks() {
 void PoseController::setLandmark(int index) {
   m_landmark = index >= 0 && index < static_cast<int>(m_landmarks.size()) ? index : -1;
   Q_EMIT changed();
+}
+
+Eigen::VectorXd PoseController::configurationNow() const {
+  const auto shown = snapshot();
+  return shown ? configuration(*shown) : m_document.workcell()->model->neutral();
+}
+
+Status PoseController::stick(const Eigen::Vector3d& from, const Eigen::Vector3d& along, double snap_rad) {
+  const auto& workcell = m_document.workcell();
+  if (!workcell || !workcell->model || spec() == nullptr) return {ErrorCode::kNotFound, m_why.toStdString()};
+  const auto found = m_geometry.pointOn(from, along, snap_rad, configurationNow(), [this](const auto& thing, const auto& link) { return serves(thing, link); });
+  if (!found) {
+    return {ErrorCode::kNotFound, m_unknown == Unknown::kObj ? "There is nothing of object " + m_object + " there: its own surface is what finds it."
+                                                             : "There is no known surface there, or it moves with the camera."};
+  }
+  for (std::size_t i = 0; i < m_landmarks.size(); ++i) {
+    const auto& known = m_landmarks[i];
+    if (known.thing != found->landmark.thing || known.link != found->landmark.link) continue;
+    if ((known.X_LO * known.xyz - found->landmark.X_LO * found->landmark.xyz).norm() > kSamePlace_m) continue;
+    setLandmark(static_cast<int>(i));
+    return {};
+  }
+  Landmark mark = found->landmark;
+  const std::string stem = mark.thing + " " + toString(found->kind) + " point ";
+  const auto count = std::count_if(m_stuck.begin(), m_stuck.end(), [&](const Landmark& each) { return each.name.rfind(stem, 0) == 0; });
+  mark.name = stem + std::to_string(count + 1);
+  m_stuck.push_back(mark);
+  refreshLandmarks();
+  setLandmark(static_cast<int>(m_landmarks.size()) - 1);
+  return {};
+}
+
+Status PoseController::stickAtPixel(const Eigen::Vector2d& pixel, double radius_px) {
+  if (const int near = landmarkNear(pixel, radius_px); near >= 0) {
+    setLandmark(near);
+    return {};
+  }
+  const auto view = viewNow();
+  const auto ray = view ? view->camera.rayOfPixel(pixel) : Result<Eigen::Vector3d>(ErrorCode::kNotFound, "There is no picture.");
+  if (!ray) return ray.error();
+  return stick(view->X_WC.translation(), (view->X_WC.linear() * *ray).normalized(), radius_px / view->camera.fx);
 }
 
 std::vector<SnapshotPtr> PoseController::snapshots() const {
@@ -162,27 +235,23 @@ Eigen::VectorXd PoseController::configuration(const vision::Snapshot& snapshot) 
 
 // Where the unknown stands with the calibration in use; T_obj as its inverse.
 Pose PoseController::inUse() const {
-  const auto* camera = spec();
-  if (camera == nullptr) return Pose::Identity();
-  if (m_unknown == Unknown::kExt) {
-    const auto file = m_calibration.fileInUse(m_camera);
-    return file && file->pose && file->pose->parent == camera->link ? file->pose->pose.inverse() : Pose::Identity();
-  }
+  if (m_unknown == Unknown::kExt) return m_X_LC.inverse();
   if (m_unknown == Unknown::kObj) return objectSpec() != nullptr ? objectSpec()->X_WO : Pose::Identity();
   return Pose::Identity();   // T_dev: a correction of the foot, in the root
 }
 
 std::optional<calibration::LoopView> PoseController::loopView(const vision::Snapshot& snapshot) const {
+  return loopViewAt(configuration(snapshot), std::to_string(snapshot.id.value));
+}
+
+std::optional<calibration::LoopView> PoseController::loopViewAt(const Eigen::VectorXd& q, const std::string& name) const {
   const auto& model = *m_document.workcell()->model;
   const auto link = model.linkIndex(spec()->link);
   if (!link) return std::nullopt;
-  const Eigen::VectorXd q = configuration(snapshot);
   const Pose X_WL = model.forward(q, *link);
   calibration::LoopView view;
-  view.name = std::to_string(snapshot.id.value);
-  const auto file = m_calibration.fileInUse(m_camera);
-  const Pose X_LC = file && file->pose && file->pose->parent == spec()->link ? file->pose->pose : Pose::Identity();
-  view.T_ext = X_LC.inverse();
+  view.name = name;
+  view.T_ext = m_X_LC.inverse();
   view.T_kin = X_WL.inverse();
   if (m_unknown == Unknown::kObj && objectSpec() != nullptr) {
     view.T_obj = objectSpec()->X_WO.inverse();
@@ -202,11 +271,16 @@ std::optional<Eigen::Vector3d> PoseController::loopPoint(const Landmark& landmar
 }
 
 std::optional<calibration::PoseObservation> PoseController::observation(const Landmark& landmark, const vision::Snapshot& snapshot) const {
-  auto view = loopView(snapshot);
-  const auto point = loopPoint(landmark, snapshot);
+  return observationAt(landmark, configuration(snapshot));
+}
+
+std::optional<calibration::PoseObservation> PoseController::observationAt(const Landmark& landmark, const Eigen::VectorXd& q) const {
+  auto view = loopViewAt(q, {});
+  const auto point = m_unknown == Unknown::kObj ? Result<Eigen::Vector3d>(landmark.xyz) : landmark.inRoot(*m_document.workcell()->model, q);
   if (!view || !point) return std::nullopt;
   view->points.push_back({*point, {0, 0}, 0});
-  calibration::LoopProblem problem{snapshot.view.camera, {*view}};
+  calibration::LoopProblem problem;
+  problem.views = {*view};
   return calibration::observationsOf(problem, m_unknown).front();
 }
 
@@ -236,6 +310,8 @@ void PoseController::remove(std::size_t pick) {
 
 void PoseController::clear() {
   m_picks.clear();
+  m_stuck.clear();
+  refreshLandmarks();
   m_guess.setZero();
   restart();
 }
@@ -313,15 +389,13 @@ vision::Overlay PoseController::overlay() const {
   const auto shown = snapshot();
   const auto view = viewNow();
   if (!shown || !view) return overlay;
-  for (const auto& [a, b] : edgesOf(*m_document.workcell(), configuration(*shown))) {
-    std::vector<Eigen::Vector2d> line;
-    for (int i = 0; i <= 8; ++i) {
-      const auto at = view->project(a + (b - a) * i / 8.0);
-      if (at) line.push_back(*at);
-    }
-    if (line.size() == 9) add(&overlay, OverlayShape::Kind::kPolyline, OverlayRole::kEllipse, line);
-  }
   const Pose now = estimate();
+  KnownGeometry geometry = m_geometry;
+  if (m_unknown == Unknown::kObj) geometry.place(m_object, now);
+  for (const auto& edge : geometry.edges(configuration(*shown), [this](const auto& thing, const auto& link) { return serves(thing, link); })) {
+    const auto line = drawn(*view, edge);
+    if (!line.empty()) add(&overlay, OverlayShape::Kind::kPolyline, OverlayRole::kEllipse, line);
+  }
   for (std::size_t i = 0; i < m_landmarks.size(); ++i) {
     const auto at = projected(m_landmarks[i], *shown, now);
     if (!at || !shown->view.camera.containsPixel(*at)) continue;
@@ -341,12 +415,23 @@ vision::Overlay PoseController::overlay() const {
 
 void PoseController::restart() {
   m_outcome.reset();
+  m_chosen.reset();
+  m_next_picture.clear();
   m_stale = m_picks.size() >= kLeast;
   if (spec() == nullptr) m_why = tr("There is no camera to calibrate: the workcell has none, or none is chosen.");
   else if (m_unknown == Unknown::kObj && objectSpec() == nullptr) m_why = tr("Choose the object whose place is unknown; it must stand in the workcell file.");
   else if (m_unknown == Unknown::kDev && spec()->pan_tilt.empty()) m_why = tr("Camera %1 hangs on no pan-tilt: its mount is T_ext.").arg(QString::fromStdString(m_camera));
   else if (snapshots().empty()) m_why = tr("Take a picture with camera %1 first.").arg(QString::fromStdString(m_camera));
   else m_why = tr("%1 of at least 3 points are clicked: choose a landmark, then click it in the picture. Five or more, well spread, are good.").arg(m_picks.size());
+  solve();
+  Q_EMIT changed();
+}
+
+void PoseController::takeAlternative() {
+  const Pose other = m_outcome->result.alternatives.front().T;
+  restart();
+  m_chosen = other;
+  m_stale = true;
   solve();
   Q_EMIT changed();
 }
@@ -374,6 +459,7 @@ void PoseController::solve() {
   options.unknowns = {m_unknown};
   const Pose start = estimate();
   options.starts[m_unknown == Unknown::kExt ? 0 : m_unknown == Unknown::kDev ? 1 : 2] = m_unknown == Unknown::kObj ? Pose(start.inverse()) : start;
+  options.chosen = m_chosen;
   m_solving = true;
   m_jobs.run<PoseOutcome>(
       this,
@@ -389,86 +475,9 @@ void PoseController::solve() {
           if (outcome) m_outcome = std::move(*outcome);
           m_why = outcome ? QString() : QString::fromStdString(outcome.error().message);
         }
+        advisePicture();
         Q_EMIT changed();
       });
-}
-
-// Goes on to the landmark that would help most in this picture.
-void PoseController::advise() {
-  const auto shown = snapshot();
-  if (!shown || m_landmarks.empty() || spec() == nullptr) return;
-  std::vector<calibration::PoseObservation> have, candidates;
-  std::vector<int> index;
-  for (const auto& pick : m_picks) {
-    const auto from = m_document.snapshot(pick.snapshot);
-    if (const auto o = from ? observation(pick.landmark, *from) : std::nullopt) have.push_back(*o);
-  }
-  for (std::size_t i = 0; i < m_landmarks.size(); ++i) {
-    const bool known = std::any_of(m_picks.begin(), m_picks.end(), [&](const LandmarkPick& p) { return p.snapshot == m_snapshot && p.landmark.name == m_landmarks[i].name; });
-    const auto o = known ? std::nullopt : observation(m_landmarks[i], *shown);
-    if (!o) continue;
-    candidates.push_back(*o);
-    index.push_back(static_cast<int>(i));
-  }
-  const auto next = calibration::nextPoint(shown->view.camera, have, candidates, estimate());
-  m_landmark = next ? index[*next] : -1;
-  Q_EMIT changed();
-}
-
-QString PoseController::whyNotApply() const {
-  if (m_solving || m_stale) return tr("The pose is being calculated.");
-  if (!m_outcome) return m_why;
-  if (m_unknown == Unknown::kDev) return tr("the foot of a pan-tilt stands in the URDF: write the numbers above into the origin of its pan joint.");
-  return {};
-}
-
-CameraChange PoseController::change() const {
-  CameraChange change;
-  change.camera = m_camera;
-  change.kind = "pose";
-  const auto& result = m_outcome->result;
-  change.X_LC = result.T[0].inverse();
-  const Matrix6d J = calibration::inverseIncrement(result.T[0]);
-  change.pose_covariance = J * result.covariance.topLeftCorner<6, 6>() * J.transpose();
-  change.rms_px = result.rms_px;
-  calibration::LoopProblem problem;
-  for (const auto& from : snapshots()) {
-    auto view = loopView(*from);
-    for (const auto& pick : m_picks) {
-      const auto point = view && pick.snapshot == from->id ? loopPoint(pick.landmark, *from) : std::nullopt;
-      if (point) view->points.push_back({*point, pick.pixel, pick.landmark.sigma_m});
-    }
-    if (view && !view->points.empty()) problem.views.push_back(*view);
-  }
-  for (const auto& o : result.observations) change.observations += o.used ? 1 : 0;
-  change.raw = observationsText(problem, "camera.yaml", kClick_px);
-  change.raw_ending = "json";
-  return change;
-}
-
-Pose PoseController::solvedObjectPose() const { return m_outcome ? Pose(m_outcome->result.T[2].inverse()) : inUse(); }
-
-QString PoseController::resultText() const {
-  if (!m_outcome) return {};
-  const auto& result = m_outcome->result;
-  const Matrix6d C = result.covariance.topLeftCorner<6, 6>();
-  const double turn = kDegrees * std::sqrt(C.topLeftCorner<3, 3>().trace()), shift = 1000 * std::sqrt(C.bottomRightCorner<3, 3>().trace());
-  Pose X = result.T[0].inverse();
-  QString what = tr("Camera in link %1").arg(QString::fromStdString(spec() != nullptr ? spec()->link : std::string()));
-  if (m_unknown == Unknown::kObj) {
-    X = solvedObjectPose();
-    what = tr("Object %1 in its parent").arg(QString::fromStdString(m_object));
-  } else if (m_unknown == Unknown::kDev) {
-    X = result.T[1].inverse();
-    what = tr("Foot of the pan-tilt, against where the URDF has it, in the root frame");
-  }
-  QStringList lines{what + QStringLiteral(": ") + QString::fromStdString(poseText(X)),
-                    tr("rms %1 px over %2 points; sure to %3\u00b0 and %4 mm (1 sigma).")
-                        .arg(QString::number(result.rms_px, 'f', 2), QString::number(result.observations.size()), QString::number(turn, 'f', 3),
-                             QString::number(shift, 'f', 2)),
-                    tr("Least certain: %1.").arg(QString::fromStdString(result.weakest))};
-  for (const auto& warning : result.warnings) lines << QString::fromStdString(warning);
-  return lines.join(QLatin1Char('\n'));
 }
 
 }  // namespace longarm::session

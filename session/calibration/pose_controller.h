@@ -12,6 +12,7 @@
 #include "calibration/pose/single_pose.h"
 #include "calibration/pose/solve_loop.h"
 #include "session/calibration/calibration_controller.h"
+#include "session/calibration/known_geometry.h"
 #include "session/calibration/landmarks.h"
 #include "session/controllers/job_runner.h"
 #include "vision/sketch/pointer_event.h"
@@ -56,6 +57,12 @@ class PoseController final : public QObject {
   const std::vector<Landmark>& landmarks() const { return m_landmarks; }
   void setLandmark(int index);             ///< The one a click will mean; -1: none.
   int landmark() const { return m_landmark; }
+  /// Makes a landmark of what a ray of the root frame points at, in the configuration of the shown picture, and chooses it:
+  /// a corner within `snap_rad` of the ray, else an edge, else the surface itself.
+  /// @returns kNotFound with a sentence when there is nothing that could serve.
+  Status stick(const Eigen::Vector3d& from, const Eigen::Vector3d& along, double snap_rad);
+  /// The same through a pixel of the shown picture, against the geometry as it is drawn there.
+  Status stickAtPixel(const Eigen::Vector2d& pixel, double radius_px);
   /// Pictures of the camera with the robot's state, oldest first.
   std::vector<SnapshotPtr> snapshots() const;
   void setSnapshot(SnapshotId id);
@@ -71,6 +78,9 @@ class PoseController final : public QObject {
   /// The operator's own guess, on top of what is in use: turn [rad] and shift [m] in the camera's (T_ext), the root's (T_dev)
   /// or the object's parent frame.  A start for the search and what is drawn until there is a solution.
   void setGuess(const Vector6d& increment);
+
+  /// Another pose that fits about as well becomes the answer, to be compared with the picture.  @pre the outcome has alternatives
+  void takeAlternative();
 
   const std::optional<PoseOutcome>& outcome() const { return m_outcome; }
   QString why() const { return m_why; }    ///< Why there is no outcome, with what to do.
@@ -88,9 +98,16 @@ class PoseController final : public QObject {
   /// rms of all clicks with the calibration in use [px]; empty without clicks.
   std::optional<double> missInUse() const;
 
+  /// Where another picture would help most, in words with what it would bring; empty: no advice yet.
+  QString nextPicture() const { return m_next_picture; }
+
   QString whyNotApply() const;
   /// T_ext: what to give to CalibrationController::apply.  @pre whyNotApply() is empty
   CameraChange change() const;
+  /// T_dev, T_obj: the same for what is no camera.  @pre whyNotApply() is empty
+  PlaceChange placeChange() const;
+  /// A sentence when the answer is less certain than what is in use; else empty.
+  QString whyWorse() const;
   /// T_obj: the object's solved pose in its parent.
   Pose solvedObjectPose() const;
   /// The solved transform in numbers as files write them.
@@ -103,10 +120,32 @@ class PoseController final : public QObject {
 
  private:
   void documentChanged(const Change& change);
+  void refreshGeometry();
   void refreshLandmarks();
+  bool serves(const std::string& thing, const std::string& link) const;
   void restart();
   void solve();
   void advise();
+  /// One more picture that could be taken, and the known points that it might hold.
+  struct PictureOffer {
+    QString words;
+    std::vector<calibration::PoseObservation> points;
+  };
+  void advisePicture();
+  void offerAngles(std::vector<PictureOffer>* offers) const;
+  void offerPoses(std::vector<PictureOffer>* offers) const;
+  void offerGripper(std::vector<PictureOffer>* offers) const;
+  std::vector<calibration::PoseObservation> observed() const;
+  std::vector<calibration::PoseObservation> seenFrom(const Eigen::VectorXd& q) const;
+  bool isCarriedByArm() const;
+  Placement footPlacement() const;
+  /// The link that carries the pan-tilt, in the root; empty when it moved between the pictures.
+  std::optional<Pose> footOfPanTilt() const;
+  void refreshMount();
+  std::optional<calibration::LoopView> loopViewAt(const Eigen::VectorXd& q, const std::string& name) const;
+  std::optional<calibration::PoseObservation> observationAt(const Landmark& landmark, const Eigen::VectorXd& q) const;
+  std::string rawText() const;
+  Eigen::VectorXd configurationNow() const;
   Pose inUse() const;
   /// Everything of the loop but the unknown, for one picture.  Empty: a link is missing.
   std::optional<calibration::LoopView> loopView(const vision::Snapshot& snapshot) const;
@@ -125,7 +164,10 @@ class PoseController final : public QObject {
   int m_observer = 0;
   std::string m_camera, m_object;
   Unknown m_unknown = Unknown::kExt;
-  std::vector<Landmark> m_landmarks;
+  KnownGeometry m_geometry;
+  Pose m_X_LC = Pose::Identity();          // the camera in its link, as in use
+  std::vector<Landmark> m_landmarks, m_stuck;
+  QString m_next_picture;
   int m_landmark = -1;
   SnapshotId m_snapshot;
   std::vector<LandmarkPick> m_picks;
@@ -133,6 +175,7 @@ class PoseController final : public QObject {
   std::optional<PoseOutcome> m_outcome;
   QString m_why;
   bool m_solving = false, m_stale = false;
+  std::optional<Pose> m_chosen;            // of several poses that fit
 };
 
 }  // namespace longarm::session

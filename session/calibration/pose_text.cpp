@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "vision/camera/camera_file.h"
 
 namespace longarm::session {
 
@@ -26,7 +27,7 @@ std::string poseText(const Pose& X) {
   return out + " rad";
 }
 
-std::string observationsText(const calibration::LoopProblem& problem, const std::string& camera_file, double sigma_px) {
+std::string observationsText(const calibration::LoopProblem& problem, double sigma_px) {
   nlohmann::json views = nlohmann::json::array();
   for (const auto& view : problem.views) {
     nlohmann::json points = nlohmann::json::array();
@@ -36,7 +37,7 @@ std::string observationsText(const calibration::LoopProblem& problem, const std:
     views.push_back({{"name", view.name}, {"T_ext", poseJson(view.T_ext)}, {"T_kin", poseJson(view.T_kin)}, {"T_dev", poseJson(view.T_dev)},
                      {"T_obj", poseJson(view.T_obj)}, {"points", points}});
   }
-  return nlohmann::json{{"camera", camera_file}, {"sigma_px", sigma_px}, {"views", views}}.dump(2) + "\n";
+  return nlohmann::json{{"camera", vision::toJson({problem.camera, {}, {}})}, {"sigma_px", sigma_px}, {"views", views}}.dump(2) + "\n";
 }
 
 }  // namespace longarm::session

@@ -14,7 +14,6 @@ namespace longarm::session {
 std::string poseText(const Pose& X);
 
 /// observations.json, which `calibrate pose` solves again.
-/// @param camera_file Path in it, relative to where it will stand.
-std::string observationsText(const calibration::LoopProblem& problem, const std::string& camera_file, double sigma_px);
+std::string observationsText(const calibration::LoopProblem& problem, double sigma_px);
 
 }  // namespace longarm::session

@@ -317,6 +317,28 @@ TEST(Boards, AGridOfCirclesGivesTheCameraBack) {
   expectCamera(views, camera);
 }
 
+TEST(Boards, ABoardPartlyOutOfThePictureABlurredOneAndOneOfAnotherSizeAreToldWithTheFix) {
+  cv::Mat print(450, 600, CV_8U, cv::Scalar(235));
+  for (int r = 0; r < 7; ++r) {
+    for (int c = 0; c < 10; ++c) {
+      if ((r + c) % 2 == 0) print(cv::Rect(50 + 50 * c, 50 + 50 * r, 50, 50)).setTo(25);
+    }
+  }
+  BoardSpec spec;
+  ASSERT_TRUE(calibration::detectBoard(print, spec, "whole").ok());
+  const auto refusal = [&](const cv::Mat& picture) {
+    const auto view = calibration::detectBoard(picture, spec, "picture");
+    return view.ok() ? std::string("accepted") : view.error().message;
+  };
+  EXPECT_NE(refusal(print(cv::Rect(0, 0, 330, 450))).find("wholly in the picture"), std::string::npos) << refusal(print(cv::Rect(0, 0, 330, 450)));
+  cv::Mat blurred;
+  cv::GaussianBlur(print, blurred, {0, 0}, 30);
+  EXPECT_NE(refusal(blurred).find("blurred or empty; hold the board still"), std::string::npos) << refusal(blurred);
+  spec.columns = 10;
+  spec.rows = 7;
+  EXPECT_NE(calibration::otherBoardHint(print, spec).find("a 9x6 board was found"), std::string::npos);
+}
+
 TEST(Boards, TheSearchOfLivePicturesFindsWhatTheThoroughOneFinds) {
   LONGARM_SKIP_WITHOUT_DATA();
   int found = 0;
