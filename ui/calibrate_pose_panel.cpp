@@ -338,7 +338,7 @@ void CalibratePosePanel::refreshScene() {
     }
     refreshMarks(q);
   }
-  m_contents->setWorld(m_bench.document());
+  m_contents->setWorld(m_bench.document(), m_bench.held().held());
   m_scene->setPickables(std::move(pickables));
   m_scene->requestRender();
 }

@@ -153,7 +153,8 @@ KnownGeometry::KnownGeometry(std::shared_ptr<const planning::Workcell> workcell,
   }
   const auto& root = m_workcell->model->links()[static_cast<std::size_t>(m_workcell->model->rootLink())].name;
   for (const auto& item : sketched) {
-    if (item.hidden || (!item.parent.empty() && item.parent != root)) continue;
+    const bool is_body = item.role == WorldRole::kObstacle || item.role == WorldRole::kDrawn;   // zones have no surface
+    if (!is_body || item.hidden || (!item.parent.empty() && item.parent != root)) continue;
     for (const auto& body : bodiesOf(item, false)) add(item.name, {}, body.X_WO, body.shape);
   }
 }
