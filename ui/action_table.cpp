@@ -39,6 +39,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kAddToWorld, "Sketch", "Add to &world", "world-add", "Ctrl+B", "Make the selected box, plane, pipe or points a body that plans keep clear of"},
       {I::kAddKeepOut, "Sketch", "Add as &keep-out zone", "", "Ctrl+Shift+B", "Make the selected box, plane, pipe or points a zone that the arm and what it holds never enter"},
       {I::kAddWorkspace, "Sketch", "Add workspace bo&x", "", "", "Put a box around the arm that it does not leave; change its numbers in the list of bodies"},
+      {I::kClearestView, "Sketch", "&Clearest view", "aim-camera", "Y", "Find the picture or camera that sees what is marked best, not past the robot's own links, and show it"},
 
       {I::kTaskTarget, "View", "Tar&get", "", "F5", "Take pictures, mark what matters, plan and play"},
       {I::kTaskCalibrate, "View", "&Calibrate", "", "F7", "Find out lenses and places of the cameras"},
@@ -46,6 +47,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kFitPictures, "View", "&Fit pictures", "view-fit", "Ctrl+0", "Show both pictures whole"},
       {I::kFullSize, "View", "Pictures at &100 %", "view-full-size", "Ctrl+1", "One picture pixel per screen pixel in both panes"},
       {I::kUndistort, "View", "&Undistorted pictures", "view-undistort", "U", "Show both pictures without lens distortion; picks keep their meaning", true},
+      {I::kOwnLinks, "View", "Ti&nt the robot", "", "Shift+Y", "Hatch the robot's own links in snapshots, where nothing should be marked", true},
       {I::kMaximise, "View", "&Maximise pane", "", "F11", "Give the whole middle to the pane that has the focus, or back", true},
       {I::kSceneFit, "View", "Frame &selection in 3-D", "scene-fit", "F", "Bring the selection, or everything, into view in the 3-D scene"},
       {I::kSceneReset, "View", "&Reset 3-D view", "scene-reset", "R", "Look at robot and surroundings from the usual side"},

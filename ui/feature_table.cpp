@@ -46,6 +46,7 @@ QString FeatureTable::tip(const session::FeatureRow& row, int column) const {
   if (column == kLocked) return row.locked ? tr("Locked: click to let it be moved") : tr("Click to keep it from being moved");
   if (!row.measured) return QString::fromStdString(row.reason);
   QString text = tr("%1 (%2)").arg(QString::fromStdString(row.name), QString::fromLatin1(vision::toString(row.kind)));
+  if (!row.size_text.empty()) text += QLatin1Char('\n') + QString::fromStdString(row.size_text);
   if (!row.note.empty()) text += QLatin1Char('\n') + QString::fromStdString(row.note);
   if (row.group != 0) text += QLatin1Char('\n') + tr("In group %1").arg(row.group);
   for (const auto& warning : row.warnings) text += QLatin1Char('\n') + QString::fromStdString(warning);

@@ -7,7 +7,7 @@ namespace longarm::ui {
 
 namespace {
 
-const QString kKey = QStringLiteral("calibration"), kBaselineKey = QStringLiteral("baseline");
+const QString kKey = QStringLiteral("calibration"), kBaselineKey = QStringLiteral("baseline"), kOnRobotKey = QStringLiteral("own-link");
 
 }  // namespace
 
@@ -15,8 +15,27 @@ SketchWatch::SketchWatch(Workbench& bench, NoticeBar& notices, QObject* parent)
     : QObject(parent), m_bench(bench), m_notices(notices) {
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &SketchWatch::refresh);
   connect(&m_bench.targeting(), &session::TargetingController::panesChanged, this, &SketchWatch::refreshBaseline);
+  connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &SketchWatch::refreshOnRobot);
+  connect(&m_bench.targeting(), &session::TargetingController::panesChanged, this, &SketchWatch::refreshOnRobot);
   refresh();
   refreshBaseline();
+}
+
+void SketchWatch::refreshOnRobot() {
+  const auto picks = session::picksOnRobot(m_bench.document(), m_bench.targeting().ownLinks());
+  const QString text = picks.empty() ? QString() : QString::fromStdString(session::onRobotText(m_bench.document(), picks.front()));
+  if (text == m_on_robot_said) return;
+  m_on_robot_said = text;
+  if (text.isEmpty()) return m_notices.clear(kOnRobotKey);
+  const FeatureId id = picks.front().item;
+  const auto advice = m_bench.adviser().advise(id);
+  std::vector<NoticeAnswer> answers;
+  if (advice && !advice->already_shown) {
+    answers.push_back({advice->snapshot.valid() ? tr("Show it") : tr("Take it"), [this, id] { m_bench.showClearestView(id); }});
+  }
+  answers.push_back({tr("Select it"), [this, id] { m_bench.targeting().select(id); }});
+  answers.push_back({tr("Understood"), {}});
+  m_notices.post(kOnRobotKey, text + QLatin1Char(' ') + QString::fromStdString(advice ? advice->text : advice.error().message), answers);
 }
 
 // Told when the pair comes into the panes, before anything is picked in it.

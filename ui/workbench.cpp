@@ -21,7 +21,7 @@ QString libraryFolder(const QString& autosave_folder) {
 
 Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
-      m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs),
+      m_targeting(m_document, m_history), m_adviser(m_document, m_targeting), m_matches(m_targeting, m_jobs),
       m_world(m_document, m_history), m_held(m_document, m_world), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
       m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
@@ -41,6 +41,7 @@ void Workbench::connectParts() {
     session::RobotRuntime* runtime = m_robot.runtime();
     m_snapshots.setFeed(m_robot.feed());
     m_aim.setFeed(m_robot.feed());
+    m_adviser.setFeed(m_robot.feed());
     m_plans.setJointSource([runtime] { return runtime->jointState(); });
     m_play.setRuntime(runtime);
     m_jog.setRobot([runtime](const planning::JogCommand& command) { return runtime->jog(command); },
@@ -215,6 +216,17 @@ void Workbench::favourCameras() {
     const bool wanted = taking ? shown : !watching || m_live.watched().contains(name);
     (void)runtime->streamCamera(camera.name, wanted);
   }
+}
+
+void Workbench::showClearestView(FeatureId feature) {
+  const auto advice = m_adviser.advise(feature);
+  if (!advice) return say(QString::fromStdString(advice.error().message));
+  say(QString::fromStdString(advice->text));
+  if (advice->already_shown) return;
+  if (advice->snapshot.valid()) return m_targeting.showSnapshot(advice->side, advice->snapshot);
+  if (const QString why = m_robot.whyNotReady(); !why.isEmpty()) return say(why);
+  if (const QString why = m_snapshots.whyNot(); !why.isEmpty()) return say(why);
+  m_snapshots.take(QString::fromStdString(advice->camera), advice->side);
 }
 
 QString Workbench::whyNotPlan() const {

@@ -26,6 +26,7 @@
 #include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
+#include "session/controllers/view_adviser.h"
 #include "session/controllers/world_controller.h"
 #include "ui/live_pictures.h"
 #include "ui/robot_session.h"
@@ -57,6 +58,7 @@ class Workbench final : public QObject {
   session::WorldController& world() { return m_world; }
   session::HeldController& held() { return m_held; }
   session::MatchController& matches() { return m_matches; }
+  session::ViewAdviser& adviser() { return m_adviser; }
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
@@ -84,6 +86,10 @@ class Workbench final : public QObject {
   void setPaneCamera(vision::PaneSide side, const QString& camera);
   QString whyNotTakePair() const;
   void takePair();
+
+  /// Finds the clearest view of what is marked, says so, and shows it: a picture of the library, or one that is taken now.
+  /// @param feature Invalid: the one that is worked on or selected.
+  void showClearestView(FeatureId feature = {});
 
   /// Why no motion can be planned now beyond what the controller knows; empty: it can.
   QString whyNotPlan() const;
@@ -116,6 +122,7 @@ class Workbench final : public QObject {
   RobotSession m_robot;
   LivePictures m_live;
   session::TargetingController m_targeting;
+  session::ViewAdviser m_adviser;
   session::MatchController m_matches;
   session::WorldController m_world;
   session::HeldController m_held;

@@ -193,6 +193,21 @@ SceneSight SceneView::sightAt(const QPointF& position) const {
   return {near, (at(1) - near).normalized(), camera->GetViewAngle() * kRadiansPerDegree / std::max(1, height())};
 }
 
+std::optional<std::pair<quint64, int>> SceneView::pickPoint(const QPointF& position, double radius) const {
+  std::optional<std::pair<quint64, int>> best;
+  double best_distance = radius;
+  for (const auto& pickable : m_pickables) {
+    for (std::size_t i = 0; i < pickable.points.size(); ++i) {
+      const auto at = widgetOfPoint(pickable.points[i]);
+      const double distance = at ? std::hypot(at->x() - position.x(), at->y() - position.y()) : radius + 1;
+      if (distance > best_distance) continue;
+      best_distance = distance;
+      best = {pickable.id, static_cast<int>(i)};
+    }
+  }
+  return best;
+}
+
 bool SceneView::eventFilter(QObject* watched, QEvent* event) {
   switch (event->type()) {
     case QEvent::MouseButtonPress: m_press = static_cast<QMouseEvent*>(event)->localPos(); break;
