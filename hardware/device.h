@@ -71,10 +71,26 @@ struct Frame {
   std::string data;                      ///< Encoded bytes.
 };
 
+/// Settings of lens and focus run from 0 to 1 over their whole travel: 0 is wide and near.  The zoom may be made of an
+/// optical and a digital part.
 class Camera : public virtual Device {
  public:
   virtual std::shared_ptr<const Frame> latestFrame() const = 0;   ///< Null before the first.
-  virtual Status setZoom(double /*zoom01*/) { return {ErrorCode::kRefused, name() + ": this camera has no zoom"}; }
+  /// Whether zoom and focus can be commanded.
+  virtual bool zooms() const { return false; }
+  virtual Status setZoom(double /*zoom01*/) { return noZoom(); }
+  virtual Status setFocus(double /*focus01*/) { return noZoom(); }
+  virtual Status focusItself() { return noZoom(); }               ///< Until the next setFocus().
+  /// As the camera tells it, newest; kStale before the first.
+  virtual Result<double> zoom() const { return noZoom(); }
+  virtual Result<double> focus() const { return noZoom(); }
+  /// The zoom at a time on the console's clock; kStale outside the last seconds.
+  virtual Result<double> zoomAt(double /*stamp_s*/) const { return noZoom(); }
+  /// Ends a change of zoom or focus under way; pictures go on.  Any thread, no waiting.
+  virtual void haltLens() noexcept {}
+
+ private:
+  Error noZoom() const { return {ErrorCode::kRefused, name() + ": this camera has no zoom"}; }
 };
 
 }  // namespace longarm::hardware

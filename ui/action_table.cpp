@@ -61,6 +61,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kResetLayout, "View", "Reset layout", "", "", "Put all panels back where they were at first"},
 
       {I::kTakePair, "Robot", "&Take pair", "snapshot-take", "Ctrl+T", "Take one picture with each pane's camera, with the robot's state at each exposure"},
+      {I::kFrameThis, "Robot", "&Frame this", "aim-camera", "Z", "Turn and zoom the panes' cameras so that the selected features fill their pictures"},
       {I::kGrabPipe, "Robot", "&Grab Pipe", "macro-grab-pipe", "Ctrl+P", "Plan to grab the selected line's pipe at its middle"},
       {I::kHome, "Robot", "&Home", "robot-home", "", "Plan a motion to the home pose"},
       {I::kStow, "Robot", "&Stow", "macro-run", "", "Plan a motion to the stow pose"},

@@ -22,7 +22,7 @@ enum class ActionId {
   kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,
   kMoreOpaque, kLessOpaque, kTheme, kResetLayout,
-  kTakePair, kGrabPipe, kHome, kStow, kReady, kLookAhead, kReplan, kOtherWay, kDiscardPlan, kCancelPlanning,
+  kTakePair, kFrameThis, kGrabPipe, kHome, kStow, kReady, kLookAhead, kReplan, kOtherWay, kDiscardPlan, kCancelPlanning,
   kPlayPause, kBackUp, kStepBack, kStepForward, kSlower, kFaster, kToStart, kToEnd,
   kGripperOpen, kGripperClose, kRestart, kStop, kReset,
   kShortcuts, kAbout

@@ -100,8 +100,11 @@ Result<Demonstration::Truth> Demonstration::truth() const {
 }
 
 Result<Eigen::Vector2d> Demonstration::see(PaneSide side, const Truth& truth, const Eigen::Vector3d& p_W) const {
-  const auto view = session::cameraView(m_bench.robot().runtime()->workcell(), m_bench.paneCamera(side).toStdString(),
-                                        *m_bench.robot().runtime()->jointState());
+  const auto& runtime = *m_bench.robot().runtime();
+  const std::string camera = m_bench.paneCamera(side).toStdString();
+  const auto zoom = runtime.zoomAt(camera, runtime.clock().now_s());
+  if (!zoom) return zoom.error();
+  const auto view = session::cameraView(runtime.workcell(), camera, *runtime.jointState(), *zoom);
   if (!view) return view.error();
   return view->camera.project(truth.X_WC[static_cast<std::size_t>(side)].inverse() * p_W);
 }

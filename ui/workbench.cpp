@@ -41,6 +41,8 @@ void Workbench::connectParts() {
     session::RobotRuntime* runtime = m_robot.runtime();
     m_snapshots.setFeed(m_robot.feed());
     m_aim.setFeed(m_robot.feed());
+    m_zoom_drive.setFeed(m_robot.feed());
+    m_watch.setFeed(m_robot.feed());
     m_plans.setJointSource([runtime] { return runtime->jointState(); });
     m_play.setRuntime(runtime);
     m_jog.setRobot([runtime](const planning::JogCommand& command) { return runtime->jog(command); },
@@ -69,7 +71,51 @@ void Workbench::connectParts() {
   connect(&m_aim, &session::AimController::failed, this, &Workbench::said);
   connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
   connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
+  connectCameras();
   connectCalibration();
+}
+
+void Workbench::connectCameras() {
+  connect(&m_zoom_drive, &session::ZoomDrive::failed, this, &Workbench::said);
+  connect(&m_robot, &RobotSession::stopChanged, this, [this] { if (m_robot.status().gate.stopped) m_zoom_drive.release(); });
+  connect(&m_robot, &RobotSession::polled, this, &Workbench::watchMotion);
+  connect(&m_aim, &session::AimController::aimed, &m_watch, &session::WatchController::giveWay);
+  connect(&m_zoom_drive, &session::ZoomDrive::commanded, this, [this](const QString& camera) {
+    const auto& workcell = m_document.workcell();
+    const auto* spec = workcell ? workcell->camera(camera.toStdString()) : nullptr;
+    if (spec != nullptr) m_watch.giveWay(QString::fromStdString(spec->pan_tilt));
+  });
+}
+
+// What the plan is for is what the tool works on.
+void Workbench::watchMotion() {
+  const auto& status = m_robot.status();
+  std::vector<Eigen::Vector3d> target;
+  const auto& plan = m_document.plan();
+  if (plan && plan->feature.valid() && m_document.item(plan->feature) != nullptr) {
+    const auto& feature = m_document.measurement(plan->feature).feature;
+    if (feature) for (const auto& vertex : feature->vertices) target.push_back(vertex.xyz);
+  }
+  m_watch.setTarget(std::move(target));
+  m_watch.refresh(status.moving, status.gate.stopped);
+}
+
+void Workbench::frameSelection() {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto id : m_document.selection().items) {
+    const auto& feature = m_document.measurement(id).feature;
+    if (feature) for (const auto& vertex : feature->vertices) points.push_back(vertex.xyz);
+  }
+  if (points.empty()) return say(tr("Select a measured feature first, or drag a frame in a live picture."));
+  if (const QString why = m_robot.whyNotReady(); !why.isEmpty()) return say(why);
+  QString done;                            // Two cameras of one head cannot look at different places.
+  for (const QString& camera : m_pane_cameras) {
+    const auto* spec = m_document.workcell()->camera(camera.toStdString());
+    if (spec == nullptr || spec->pan_tilt.empty() || QString::fromStdString(spec->pan_tilt) == done) continue;
+    done = QString::fromStdString(spec->pan_tilt);
+    m_aim.framePoints(camera, points);
+  }
+  if (done.isEmpty()) say(tr("Neither pane shows a camera that a pan-tilt aims."));
 }
 
 void Workbench::lookAtGripper() {
@@ -151,6 +197,8 @@ void Workbench::useCalibrations() {
   m_document.setWorkcell(workcell);
   m_live.setWorkcell(workcell);
   m_aim.setWorkcell(workcell);
+  m_zoom_drive.setWorkcell(workcell);
+  m_watch.setWorkcell(workcell);
 }
 
 QString Workbench::whyNotCalibrate() const {

@@ -26,7 +26,9 @@
 #include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
+#include "session/controllers/watch_controller.h"
 #include "session/controllers/world_controller.h"
+#include "session/controllers/zoom_drive.h"
 #include "ui/live_pictures.h"
 #include "ui/robot_session.h"
 
@@ -62,6 +64,8 @@ class Workbench final : public QObject {
   session::PlayController& play() { return m_play; }
   session::ReachController& reach() { return m_reach; }
   session::AimController& aim() { return m_aim; }
+  session::ZoomDrive& zoomDrive() { return m_zoom_drive; }
+  session::WatchController& watch() { return m_watch; }
   session::JogController& jog() { return m_jog; }
   session::Autosave& autosave() { return m_autosave; }
   session::CalibrationController& calibration() { return m_calibration; }
@@ -92,6 +96,8 @@ class Workbench final : public QObject {
   void planOtherWay();
   /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
   void nudge(planning::JogFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
+  /// Turns and zooms the panes' cameras so that the selected features fill their pictures.
+  void frameSelection();
   /// A sentence for the operator.
   void say(const QString& sentence);
 
@@ -109,6 +115,8 @@ class Workbench final : public QObject {
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
   void lookAtReach();
+  void connectCameras();
+  void watchMotion();
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -124,6 +132,8 @@ class Workbench final : public QObject {
   session::PlayController m_play;
   session::ReachController m_reach;
   session::AimController m_aim;
+  session::ZoomDrive m_zoom_drive;
+  session::WatchController m_watch;
   session::JogController m_jog;
   session::Autosave m_autosave;
   session::CalibrationController m_calibration;

@@ -35,12 +35,12 @@ json goalsJson(const RobotBody& body) {
   return out;
 }
 
-json linksJson(const RobotBody& body) {
+json linksJson(const RobotBody& body, const CameraRig& rig) {
   json out = {{body.workcell().arm.tip_link, poseJson(body.X_WT())}};
   const auto snapshot = body.snapshot();
   for (const auto& camera : body.workcell().cameras) {
     const auto pose = snapshot.X_WC.find(camera.name);
-    if (pose != snapshot.X_WC.end()) out[camera.link] = poseJson(pose->second);
+    if (pose != snapshot.X_WC.end()) out[camera.link] = poseJson(pose->second * rig.mount(camera.name));
   }
   return out;
 }
@@ -90,7 +90,7 @@ RobotServices::Answer RobotServices::truth() const {
                               {"held", m_body.world().heldName()},
                               {"contacts", contactsJson(m_body)},
                               {"goals", goalsJson(m_body)},
-                              {"links", linksJson(m_body)}});
+                              {"links", linksJson(m_body, m_rig)}});
 }
 
 RobotServices::Answer RobotServices::step(const rosbridge::Body& args) {

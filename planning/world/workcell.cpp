@@ -37,6 +37,7 @@ class WorkcellReader {
     readBackend(top);
     readObjects(top);
     readPoses(top);
+    for (const auto& place : top.textsOr("templates")) m_cell.templates.push_back(absolute(place));
     if (auto speeds = top.sectionOr("speeds")) {
       m_cell.max_tool_speed = speeds->numberOr("max_tool_speed", m_cell.max_tool_speed, NumberRange::kPositive);
       m_cell.approach_speed = speeds->numberOr("approach_speed", m_cell.approach_speed, NumberRange::kPositive);
@@ -194,6 +195,7 @@ class WorkcellReader {
       spec.role = section.textOr("role", "");
       spec.sigma_px = section.numberOr("sigma_px", 0.5, NumberRange::kPositive);
       if (section.has("calibration")) spec.calibration = absolute(section.text("calibration"));
+      readLens(section, spec);
       section.finish();
       if (m_cell.camera(spec.name) != nullptr) section.refuse("name", "a name of its own");
       if (!spec.pan_tilt.empty() && !hasPanTilt(spec.pan_tilt)) section.refuse("pan_tilt", "one of pan_tilts");
@@ -204,6 +206,22 @@ class WorkcellReader {
       const std::string partner = section.textOr("stereo_partner", "");
       if (!partner.empty() && m_cell.camera(partner) == nullptr) section.refuse("stereo_partner", "one of cameras");
     }
+  }
+
+  void readLens(YamlSection& section, CameraSpec& spec) {
+    spec.zooms = section.flagOr("zoom", spec.role == "ptz");
+    if (section.has("picture_size")) {
+      const auto size = section.numbers("picture_size", 2, NumberRange::kPositive);
+      spec.width = static_cast<int>(size[0]);
+      spec.height = static_cast<int>(size[1]);
+    }
+    auto digital = section.sectionOr("digital_zoom");
+    if (!digital) return;
+    spec.digital_zoom.from = digital->number("from", NumberRange::kNotNegative);
+    spec.digital_zoom.factor = digital->number("factor", NumberRange::kPositive);
+    if (spec.digital_zoom.from >= 1) digital->refuse("from", "a setting below 1");
+    if (spec.digital_zoom.factor < 1) digital->refuse("factor", "an enlargement of at least 1");
+    digital->finish();
   }
 
   void warnAboutCalibration(const CameraSpec& spec) {

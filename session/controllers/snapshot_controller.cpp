@@ -54,6 +54,7 @@ void SnapshotController::request(std::vector<std::string> cameras, PaneSide side
 void SnapshotController::poll() {
   if (m_state != State::kWaiting) return;
   if (m_feed == nullptr) return fail("The robot was disconnected while a picture was being taken.");
+  m_refusal.clear();
   collect();
   if (complete()) {
     auto chosen = choose();
@@ -85,10 +86,21 @@ void SnapshotController::collect() {
     if (!kept.empty() && kept.back().frame->stamp_s >= frame->stamp_s) continue;
     // The state at the exposure may still be on its way: ask again at the next poll.
     auto state = m_feed->jointStateAt(frame->stamp_s);
-    if (!state) continue;
-    kept.push_back({frame, std::move(*state)});
+    const auto zoom = m_feed->zoomAt(m_cameras[i], frame->stamp_s);
+    if (!state || !zoom || zoomMoves(m_cameras[i], frame->stamp_s, *zoom)) continue;
+    kept.push_back({frame, std::move(*state), *zoom});
     if (kept.size() > kFramesKept) kept.erase(kept.begin());
   }
+}
+
+// While the lens turns, the picture and what is told of the lens are not of one instant.
+bool SnapshotController::zoomMoves(const std::string& camera, double stamp_s, std::optional<double> zoom) {
+  constexpr double kBefore_s = 0.1, kStill = 0.002;
+  if (!zoom) return false;
+  const auto before = m_feed->zoomAt(camera, stamp_s - kBefore_s);
+  if (!before || !*before || std::abs(**before - *zoom) <= kStill) return false;
+  m_refusal = "The zoom of " + camera + " is moving. Wait until it stands and take the picture again.";
+  return true;
 }
 
 bool SnapshotController::complete() const {

@@ -70,6 +70,7 @@ json snapshotJson(const vision::Snapshot& snapshot, const std::string& picture) 
               {"camera", vision::toJson(file)}, {"pose", poseJson(snapshot.view.parent, snapshot.view.X_WC)},
               {"sigma_px", snapshot.view.sigma_px}, {"stamp_s", snapshot.stamp_s},
               {"wall_time_s", snapshot.wall_time_s}, {"source", snapshot.source}};
+  if (snapshot.view.zoom) out["zoom"] = *snapshot.view.zoom;
   if (!snapshot.view.intrinsics_covariance.isZero(0)) {
     out["intrinsics_covariance"] = numbers(snapshot.view.intrinsics_covariance.data(), 100);
   }
@@ -229,6 +230,7 @@ SnapshotPtr readSnapshot(const json& value, const fs::path& folder, const std::s
   readPose(need(value, "pose", where), where + ".pose", view);
   view.sigma_px = number(need(value, "sigma_px", where), where + ".sigma_px");
   if (!(view.sigma_px > 0)) fault(where + ".sigma_px", "is " + formatNumber(view.sigma_px) + ", expected > 0");
+  if (value.contains("zoom")) view.zoom = number(value["zoom"], where + ".zoom");
   if (value.contains("intrinsics_covariance")) {
     const auto list = vectorOf<Eigen::VectorXd>(value["intrinsics_covariance"], 100, where + ".intrinsics_covariance");
     view.intrinsics_covariance = Eigen::Map<const Eigen::Matrix<double, 10, 10>>(list.data());

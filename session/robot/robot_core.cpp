@@ -197,6 +197,7 @@ void RobotCore::stop(const std::string& source, const std::string& reason) noexc
   m_gate->stop(source, reason);
   if (m_devices.gripper) m_devices.gripper->stop();
   for (const auto& [name, device] : m_devices.pan_tilts) device->stop();
+  for (const auto& [name, device] : m_devices.cameras) device->haltLens();
 }
 
 Status RobotCore::resetStop() {

@@ -132,6 +132,16 @@ struct RobotRuntime::Impl {
 
   // What a call answers while no robot is connected.
   static Error noRobot() { return {ErrorCode::kDisconnected, "no robot is connected; restart it"}; }
+
+  Result<std::shared_ptr<hardware::Camera>> camera(const std::string& name) const {
+    const auto life = current();
+    if (!life) return noRobot();
+    const auto found = life->devices().cameras.find(name);
+    if (found == life->devices().cameras.end()) {
+      return Error{ErrorCode::kNotFound, "this robot has no camera \"" + name + "\""};
+    }
+    return found->second;
+  }
 };
 
 RobotRuntime::RobotRuntime() : m_impl(std::make_unique<Impl>()) {}
@@ -349,13 +359,34 @@ Status RobotRuntime::streamCamera(const std::string& name, bool on) {
 }
 
 Status RobotRuntime::setZoom(const std::string& camera, double zoom01) {
-  const auto core = m_impl->current();
-  if (!core) return Impl::noRobot();
-  const auto found = core->devices().cameras.find(camera);
-  if (found == core->devices().cameras.end()) {
-    return {ErrorCode::kNotFound, "this robot has no camera \"" + camera + "\""};
-  }
-  return found->second->setZoom(zoom01);
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->setZoom(zoom01) : Status(device.error());
+}
+
+Result<std::optional<double>> RobotRuntime::zoomAt(const std::string& camera, double stamp_s) const {
+  const auto device = m_impl->camera(camera);
+  if (!device) return device.error();
+  if (!(*device)->zooms()) return std::optional<double>();
+  const auto zoom = (*device)->zoomAt(stamp_s);
+  if (!zoom) return zoom.error();
+  return std::optional<double>(*zoom);
+}
+
+Status RobotRuntime::setFocus(const std::string& camera, double focus01) {
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->setFocus(focus01) : Status(device.error());
+}
+
+Status RobotRuntime::focusItself(const std::string& camera) {
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->focusItself() : Status(device.error());
+}
+
+std::optional<double> RobotRuntime::focus(const std::string& camera) const {
+  const auto device = m_impl->camera(camera);
+  if (!device || !(*device)->zooms()) return {};
+  const auto focus = (*device)->focus();
+  return focus ? std::optional<double>(*focus) : std::nullopt;
 }
 
 void RobotRuntime::touchGui() {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -176,6 +177,11 @@ class RobotRuntime {
   /// Starts or ends the pictures of one camera (each costs the robot and the link time).  kNotFound.
   Status streamCamera(const std::string& name, bool on);
   Status setZoom(const std::string& camera, double zoom01);
+  /// Setting of its zoom at a time on clock(); empty for a camera that has none.  kStale, kNotFound.
+  Result<std::optional<double>> zoomAt(const std::string& camera, double stamp_s) const;
+  Status setFocus(const std::string& camera, double focus01);
+  Status focusItself(const std::string& camera);   ///< Until the next setFocus().
+  std::optional<double> focus(const std::string& camera) const;   ///< As told last.
 
   /// The window is alive; called by its 30 Hz timer.
   void touchGui();

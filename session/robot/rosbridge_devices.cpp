@@ -82,7 +82,7 @@ Result<DeviceSet> makeRosbridgeDevices(const planning::Workcell& workcell, const
   if (auto status = addPanTilts(workcell, robot, topics, set); !status) return status.error();
   for (const auto& spec : workcell.cameras) {
     hardware::CameraSettings camera;
-    camera.zooms = spec.role == "ptz";
+    camera.zooms = spec.zooms;
     set.cameras[spec.name] = std::make_shared<hardware::RosbridgeCamera>(spec.name, robot, camera, topics);
   }
   set.call_service = serviceCall(robot.link);

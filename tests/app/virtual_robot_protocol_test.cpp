@@ -313,6 +313,22 @@ TEST(VirtualProtocol, PtzCamerasZoomAndSaySo) {
   EXPECT_NE(s.told().find("1.5"), std::string::npos);
 }
 
+TEST(VirtualProtocol, PtzCamerasFocusByHandOrByThemselves) {
+  RobotOptions options = Session::lockstep();
+  options.variant = "ptz";
+  Session s(options);
+  s.subscribe("/camera/ptz_left/focus_state");
+  s.publish("/camera/ptz_left/focus", {{"data", 0.1}});
+  s.step(2);
+  const auto focus = [&] { return s.on("/camera/ptz_left/focus_state").back()["data"].get<double>(); };
+  ASSERT_FALSE(s.on("/camera/ptz_left/focus_state").empty());
+  EXPECT_NEAR(focus(), 0.1, 1e-6);
+  s.subscribe("/camera/ptz_left/image/compressed");   // what is seen is what it focuses on
+  s.publish("/camera/ptz_left/focus", {{"data", -1}});
+  s.step(2);
+  EXPECT_GT(focus(), 0.3);
+}
+
 TEST(VirtualProtocol, SurvivesThousandsOfDamagedFrames) {
   Session s;
   s.subscribe("/joint_states");

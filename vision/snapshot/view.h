@@ -25,6 +25,7 @@ struct View {
   std::string parent = "base_link";          ///< Frame that X_WC and every result are expressed in.
   Pose X_WC = Pose::Identity();              ///< Camera optical frame in `parent`.
   double sigma_px = 0.5;                     ///< Pick noise, 1 sigma [px].
+  std::optional<double> zoom;                ///< Setting that `camera` holds for, 0 ... 1; empty: the lens is fixed.
   /// Covariance of (rotvec [rad], translation [m]) of X_WC as a left perturbation in `parent`; zero if unknown.
   /// The two parts are split: R <- Exp(rotvec) R, p <- p + translation (the camera turns about its own centre).
   Matrix6d pose_covariance = Matrix6d::Zero();
