@@ -72,6 +72,7 @@ void MainWindow::makePanels() {
   m_cameras = new CamerasPanel(m_bench, m_appearance);
   m_snapshots = new SnapshotsPanel(m_bench, m_appearance);
   m_world = new WorldPanel(m_bench, *m_actions);
+  m_templates = new TemplatePanel(m_bench);
   m_strip = new StatusStrip(m_bench, *m_actions, m_appearance);
   m_notices = new NoticeBar;
   m_tasks = new TaskTabs(*m_actions);
@@ -102,10 +103,11 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("templates"), tr("Templates"), scrolled(m_templates), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("correction"), tr("Correction"), scrolled(m_nudge), Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   // Behind the list of features, so that they take no room of their own.
-  for (const char* name : {"jog", "correction", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
+  for (const char* name : {"jog", "correction", "snapshots", "world", "templates"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
   auto* column = m_frame->content();
   m_pages = new QStackedWidget;

@@ -30,6 +30,7 @@
 #include "ui/task_tabs.h"
 #include "ui/window_layout.h"
 #include "ui/workbench.h"
+#include "ui/template_panel.h"
 #include "ui/world_panel.h"
 #include "widgets/mode_frame.h"
 
@@ -57,6 +58,7 @@ class MainWindow final : public QMainWindow {
   StopPanel* stopPanel() const { return m_stop; }
   SnapshotsPanel* snapshots() const { return m_snapshots; }
   WorldPanel* world() const { return m_world; }
+  TemplatePanel* templates() const { return m_templates; }
   SketchEdits* edits() const { return m_edits; }
   CamerasPanel* cameras() const { return m_cameras; }
   StatusStrip* strip() const { return m_strip; }
@@ -119,6 +121,7 @@ class MainWindow final : public QMainWindow {
   StopPanel* m_stop;
   CamerasPanel* m_cameras;
   SnapshotsPanel* m_snapshots;
+  TemplatePanel* m_templates;
   WorldPanel* m_world;
   StatusStrip* m_strip;
   NoticeBar* m_notices;

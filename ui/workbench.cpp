@@ -23,7 +23,8 @@ Workbench::Workbench(const QString& autosave_folder, QObject* parent)
     : QObject(parent), m_history(m_document), m_robot(m_jobs), m_live(m_robot, m_jobs),
       m_targeting(m_document, m_history), m_matches(m_targeting, m_jobs),
       m_world(m_document, m_history), m_held(m_document, m_world), m_snapshots(m_document, m_history, m_jobs), m_plans(m_document, m_jobs),
-      m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_autosave(m_document, m_jobs, autosave_folder),
+      m_play(m_document, m_plans, m_jobs), m_reach(m_plans, m_jobs), m_templates(m_document, m_history, m_plans, m_world),
+      m_autosave(m_document, m_jobs, autosave_folder),
       m_calibration(m_document, m_jobs, libraryFolder(autosave_folder)), m_pose(m_document, m_calibration, m_jobs),
       m_lens(m_calibration, m_jobs), m_stereo(m_document, m_calibration, m_jobs), m_fixture(m_jobs), m_zoom(m_calibration, m_jobs), m_health(m_document, m_calibration, m_pose) {
   // A robot that renders its pictures beside a compiler, or sends them over a poor radio, needs seconds for one.
@@ -72,7 +73,30 @@ void Workbench::connectParts() {
   connect(&m_jog, &session::JogController::refused, this, &Workbench::said);
   connect(&m_autosave, &session::Autosave::failed, this, &Workbench::said);
   connectCameras();
+  connectTemplates();
   connectCalibration();
+}
+
+void Workbench::connectTemplates() {
+  session::TemplateHands hands;
+  hands.joints = [this] { return m_robot.runtime() != nullptr ? m_robot.runtime()->jointState() : nullptr; };
+  hands.holding = [this] { return m_robot.runtime() != nullptr && m_robot.runtime()->holding(); };
+  hands.move_gripper = [this](double position) -> Status {
+    if (m_robot.runtime() == nullptr) return {ErrorCode::kDisconnected, "No robot is connected."};
+    return m_robot.runtime()->setGripper(position);
+  };
+  m_templates.setHands(std::move(hands));
+  connect(&m_templates, &session::TemplateController::failed, this, &Workbench::said);
+  connect(&m_robot, &RobotSession::polledSlowly, this, [this] {
+    const auto& status = m_robot.status();
+    m_templates.refresh(status.moving, status.gate.stopped, status.player == planning::PlayerState::kDone);
+  });
+}
+
+Status Workbench::beginTemplate(WorldItemId item, const QString& action) {
+  if (const QString why = whyNotPlan(); !why.isEmpty()) return {ErrorCode::kRefused, why.toStdString()};
+  if (m_robot.status().gate.stopped) return {ErrorCode::kRefused, "STOP is latched: hold Reset first."};
+  return m_templates.begin(item, action);
 }
 
 void Workbench::connectCameras() {
@@ -199,6 +223,7 @@ void Workbench::useCalibrations() {
   m_aim.setWorkcell(workcell);
   m_zoom_drive.setWorkcell(workcell);
   m_watch.setWorkcell(workcell);
+  for (const auto& warning : m_templates.reload()) say(QString::fromStdString(warning));
 }
 
 QString Workbench::whyNotCalibrate() const {

@@ -26,6 +26,7 @@
 #include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
+#include "session/controllers/template_controller.h"
 #include "session/controllers/watch_controller.h"
 #include "session/controllers/world_controller.h"
 #include "session/controllers/zoom_drive.h"
@@ -66,6 +67,7 @@ class Workbench final : public QObject {
   session::AimController& aim() { return m_aim; }
   session::ZoomDrive& zoomDrive() { return m_zoom_drive; }
   session::WatchController& watch() { return m_watch; }
+  session::TemplateController& templates() { return m_templates; }
   session::JogController& jog() { return m_jog; }
   session::Autosave& autosave() { return m_autosave; }
   session::CalibrationController& calibration() { return m_calibration; }
@@ -96,6 +98,7 @@ class Workbench final : public QObject {
   void planOtherWay();
   /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
   void nudge(planning::JogFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
+  Status beginTemplate(WorldItemId item, const QString& action);
   /// Turns and zooms the panes' cameras so that the selected features fill their pictures.
   void frameSelection();
   /// A sentence for the operator.
@@ -117,6 +120,7 @@ class Workbench final : public QObject {
   void lookAtReach();
   void connectCameras();
   void watchMotion();
+  void connectTemplates();
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -134,6 +138,7 @@ class Workbench final : public QObject {
   session::AimController m_aim;
   session::ZoomDrive m_zoom_drive;
   session::WatchController m_watch;
+  session::TemplateController m_templates;
   session::JogController m_jog;
   session::Autosave m_autosave;
   session::CalibrationController m_calibration;

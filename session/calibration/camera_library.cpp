@@ -147,6 +147,14 @@ Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const Pla
   return keep(std::move(record), raw, raw_ending);
 }
 
+Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vision::ZoomFile& table) {
+  const auto folder = newFolder(&record);
+  if (!folder) return folder.error();
+  record.file = *folder + "/camera.xml";
+  if (const Status written = vision::writeZoomFile(record.file, table); !written) return written.error();
+  return keep(std::move(record), {}, {});
+}
+
 Result<CalibrationRecord> CameraLibrary::keep(CalibrationRecord record, const std::string& raw, const std::string& raw_ending) {
   const fs::path folder = fs::path(record.file).parent_path();
   if (!raw.empty()) {

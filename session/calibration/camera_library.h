@@ -10,6 +10,7 @@
 #include "core/result.h"
 #include "session/calibration/placement.h"
 #include "vision/camera/camera_file.h"
+#include "vision/camera/zoom_camera.h"
 
 namespace longarm::session {
 
@@ -49,6 +50,8 @@ class CameraLibrary {
                                 const std::string& raw_ending = {});
   Result<CalibrationRecord> add(CalibrationRecord record, const Placement& placement, const std::string& raw = {},
                                 const std::string& raw_ending = {});
+  /// The same for the table of a zoom camera.
+  Result<CalibrationRecord> add(CalibrationRecord record, const vision::ZoomFile& table);
   /// Id of the calibration in use; empty: the workcell's own file.
   std::string inUse(const std::string& workcell, const std::string& name, Subject subject = Subject::kCamera) const;
   Status setInUse(const std::string& workcell, const std::string& name, const std::string& id, Subject subject = Subject::kCamera);

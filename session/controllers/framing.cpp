@@ -16,7 +16,6 @@ Eigen::Vector2d middleOf(const vision::CameraModel& camera) { return {(camera.wi
 
 /// A camera whose pan, tilt and zoom are tried out.
 struct Trial {
-  const planning::Workcell& workcell;
   const planning::CameraSpec& spec;
   const vision::CameraCalibration& calibration;
   const AimedCamera& aimed;
@@ -122,7 +121,7 @@ Result<Framing> frame(const planning::Workcell& workcell, const planning::Camera
   if (!aimed) return aimed.error();
   const auto calibration = calibrationOf(camera);
   if (!calibration) return calibration.error();
-  const Trial trial{workcell, camera, **calibration, *aimed};
+  const Trial trial{camera, **calibration, *aimed};
   const auto [wide, narrow] = (*calibration)->range();
   const bool zooms = zoom_now && wish.may_zoom && narrow > wide;
   auto angles = aim(trial, points_W, zooms ? std::clamp(*zoom_now, wide, narrow) : zoom_now);

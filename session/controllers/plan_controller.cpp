@@ -160,6 +160,12 @@ FeatureId PlanController::targetOf(const QString& name) const {
 }
 
 std::optional<planning::PlanContext> PlanController::contextOf(const QString& name) const {
+  auto context = contextWithout(targetOf(name));
+  if (context) context->arguments = arguments(name);
+  return context;
+}
+
+std::optional<planning::PlanContext> PlanController::contextWithout(FeatureId target) const {
   const auto workcell = m_document.workcell();
   const auto joints = m_joints ? m_joints() : nullptr;
   if (!workcell || !joints) return std::nullopt;
@@ -168,24 +174,58 @@ std::optional<planning::PlanContext> PlanController::contextOf(const QString& na
   context.start = workcell->model->neutral();
   workcell->model->assign(*joints, context.start);
   if (m_held == nullptr) {
-    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), targetOf(name));
+    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), target);
   } else {
-    context.objects = m_held->obstacles(targetOf(name));
+    context.objects = m_held->obstacles(target);
   }
   if (m_held != nullptr && m_held->held()) {
     context.objects.push_back(m_held->held()->at(*workcell, context.start));
     context.held = {m_held->held()->body.name};
   }
-  context.arguments = arguments(name);
   context.seed = m_seed;
   context.budget_s = m_budget_s;
   return context;
 }
 
 void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
-  const auto workcell = m_document.workcell();
   planning::PlanContext context = *contextOf(QString::fromStdString(info.name));
   context.avoid = avoid;
+  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world(), {}};
+  if (info.takes) request.feature = *m_document.selectedFeature();
+  run(macro, std::move(context), std::move(request));
+}
+
+Status PlanController::planGiven(const QString& name, GivenFeature given) {
+  const planning::Macro* macro = this->macro(name);
+  if (macro == nullptr) return {ErrorCode::kNotFound, "There is no macro \"" + name.toStdString() + "\" for this robot."};
+  const planning::MacroInfo info = macro->info();
+  if (info.takes != given.feature.kind) {
+    return {ErrorCode::kInvalidInput, "Macro " + info.name + " does not take a " + vision::toString(given.feature.kind) + "."};
+  }
+  if (const auto good = planning::MacroArguments::from(info, given.arguments); !good) return good.error();
+  auto context = contextWithout({});
+  if (!context) return {ErrorCode::kRefused, "The robot's joints are not known yet."};
+  const std::string& root = rootFrame(*m_document.workcell());
+  if (given.feature.parent != root) {
+    return {ErrorCode::kRefused, "'" + given.feature.name + "' stands in frame " + given.feature.parent + ", the robot in " + root + "."};
+  }
+  cancel();
+  context->arguments = given.arguments;
+  if (given.carried.valid()) {
+    context->objects = obstaclesOf(m_document.world(), root, {}, given.carried);
+    context->held.clear();
+  }
+  Request request{++m_generation, info.name, {}, given.feature, {}, m_document.world(), std::move(given)};
+  run(*macro, std::move(*context), std::move(request));
+  return {};
+}
+
+void PlanController::acceptWorld() {
+  if (m_planned) m_planned->world = m_document.world();
+}
+
+void PlanController::run(const planning::Macro& macro, planning::PlanContext context, Request request) {
+  const auto workcell = m_document.workcell();
   m_cancel = CancelToken();
   context.cancel = m_cancel;
   m_live = std::make_shared<Progress>();
@@ -194,11 +234,9 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world()};
-  if (info.takes) request.feature = *m_document.selectedFeature();
   m_progress = 0;
   m_progress_text.clear();
-  m_planning = QString::fromStdString(info.name);
+  m_planning = QString::fromStdString(request.macro);
   setState(State::kPlanning);
   m_timer.start();
   // The job keeps workcell and macros alive: a new workcell may be loaded meanwhile.
@@ -246,12 +284,14 @@ void PlanController::cancel() {
 
 Status PlanController::replan() {
   if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan to plan again. Choose a macro."};
+  if (m_planned && m_planned->given) return planGiven(QString::fromStdString(m_document.plan()->macro), *m_planned->given);
   if (const Status selected = selectPlanned(); !selected) return selected;
   return plan(QString::fromStdString(m_document.plan()->macro));
 }
 
 QString PlanController::whyNotOtherWay() const {
   if (!m_document.plan() || !m_document.plan()->plan.ok() || !m_planned) return tr("There is no plan.");
+  if (m_planned->given) return tr("The step of a template has one way: end its action and use the macro itself.");
   if (m_document.plan()->plan.entry.size() == 0) return tr("This motion begins where the arm stands: there is one way.");
   return {};
 }
@@ -284,7 +324,7 @@ void PlanController::discard() {
 }
 
 Status PlanController::checkFeature() const {
-  if (!m_planned || !m_planned->feature) return {};
+  if (!m_planned || !m_planned->feature || m_planned->given) return {};
   const FeatureId id = m_planned->item;
   const SketchItem* item = m_document.item(id);
   if (item == nullptr) return {ErrorCode::kStale, "The feature the plan was made for was deleted. Plan again."};

@@ -36,6 +36,12 @@ struct MacroRow {
 /// Values of macros' parameters, by macro and parameter, where they differ from the defaults.
 using MacroSettings = std::map<std::string, std::map<std::string, double>>;
 
+/// What a template hands to its macro.
+struct GivenFeature {
+  vision::Feature feature;
+  std::map<std::string, double> arguments;
+  WorldItemId carried;                     ///< Its moving parts go with the tool; may be invalid.
+};
 using MacroList = std::vector<std::unique_ptr<planning::Macro>>;
 
 /// GUI thread only.  A finished plan, good or bad, becomes Document::plan().
@@ -80,6 +86,10 @@ class PlanController final : public QObject {
   std::vector<MacroRow> macros() const;
   /// Starts planning; what was under way is cancelled and its result dropped.  @returns kRefused with the reason.
   Status plan(const QString& macro);
+  /// Plans a macro for a feature that is not of the sketch, with these arguments and no others, whatever is selected.
+  Status planGiven(const QString& macro, GivenFeature given);
+  /// The sketched world was changed as the motion of the plan changes the real one: the plan stays fresh.
+  void acceptWorld();
   void cancel();
   /// Plans the same macro for the same feature from the joints now.
   Status replan();
@@ -111,6 +121,7 @@ class PlanController final : public QObject {
     std::optional<vision::Feature> feature;
     std::vector<Eigen::VectorXd> avoid;
     std::vector<WorldItem> world;
+    std::optional<GivenFeature> given;     ///< Instead of a feature of the sketch.
   };
 
   void rebuildMacros();
@@ -118,6 +129,8 @@ class PlanController final : public QObject {
   Status plan(const QString& macro, std::vector<Eigen::VectorXd> avoid);
   FeatureId targetOf(const QString& macro) const;
   void start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid);
+  std::optional<planning::PlanContext> contextWithout(FeatureId target) const;
+  void run(const planning::Macro& macro, planning::PlanContext context, Request request);
   Status selectPlanned();
   void judge(const planning::MacroInfo& info, MacroRow& row) const;
   const planning::Macro* macro(const QString& name) const;

@@ -12,14 +12,17 @@ namespace longarm::session {
 namespace {
 
 constexpr double kPeriod_s = 0.1;
-constexpr double kTurnRate = 0.5;        // [rad/s]
-constexpr double kZoomRate = 0.15;       // of the whole travel per second
+constexpr double kTurnRate = 0.8;        // [rad/s]
+constexpr double kZoomIn = 0.15, kZoomOut = 0.4;         // of the whole travel per second: out in time, in at leisure
+constexpr double kAhead_s = 0.6;         // of the tool's motion that is looked at
 constexpr double kLeftAlone_s = 5;       // after the operator's own hand
 constexpr double kFill = 0.6;            // What is watched shall take up so much of the picture,
-constexpr double kTooWide = 0.8;         // ... no more than this,
+constexpr double kTooWide = 0.75;        // ... no more than this,
 constexpr double kTooSmall = 0.25;       // ... and no less, where there is a zoom.
 constexpr double kThere = 0.005;         // [rad], and of the zoom's travel
+constexpr double kLeast = 1e-4;          // A smaller change is none.
 constexpr double kFresh_s = 0.5;         // A command older than this is forgotten: the joints say where the head is.
+constexpr double kCreeps = 0.01;         // A slower tool is where it is [m/s].
 constexpr double kHand_m = 0.12;         // of the tool that is watched, from its point
 
 double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
@@ -71,7 +74,13 @@ std::vector<Eigen::Vector3d> WatchController::toolPoints(const JointState& joint
   Eigen::VectorXd q = model.neutral();
   model.assign(joints, q);
   const Pose X_WT = model.forward(q, *tip);
-  return {X_WT.translation(), X_WT * Eigen::Vector3d(0, 0, -kHand_m)};
+  std::vector<Eigen::Vector3d> out = {X_WT.translation(), X_WT * Eigen::Vector3d(0, 0, -kHand_m)};
+  const auto before = m_feed->jointStateAt(joints.stamp_s - kPeriod_s);
+  if (!before) return out;
+  model.assign(*before, q);
+  const Eigen::Vector3d speed = (X_WT.translation() - model.forward(q, *tip).translation()) / kPeriod_s;
+  if (speed.norm() > kCreeps) out.push_back(X_WT.translation() + kAhead_s * speed);
+  return out;
 }
 
 void WatchController::watch(const planning::CameraSpec& camera, Head& head, double now_s) {
@@ -83,16 +92,19 @@ void WatchController::watch(const planning::CameraSpec& camera, Head& head, doub
   if (!view || tool.empty()) return;
   std::vector<Eigen::Vector3d> both = tool;
   both.insert(both.end(), m_target.begin(), m_target.end());
-  const FramingWish wish{kFill, true};
-  auto wanted = frame(*m_workcell, camera, both, *joints, *zoom, wish);
-  if (!wanted || !wanted->shortfall.empty()) {
-    if (auto alone = frame(*m_workcell, camera, tool, *joints, *zoom, wish)) wanted = std::move(alone);
-  }
-  if (!wanted) return;
+  const auto framed = [&](const std::vector<Eigen::Vector3d>& points, bool may_zoom) {
+    return frame(*m_workcell, camera, points, *joints, *zoom, {kFill, may_zoom});
+  };
+  auto goal = framed(both, true);
+  if (!goal || !goal->shortfall.empty()) goal = framed(tool, true);
+  // The lens is slower than the head: what does not fit yet is not looked at yet.
+  auto now = framed(both, false);
+  if (!now || !now->shortfall.empty()) now = framed(tool, false);
+  if (!goal || !now) return;
   const double part = spread(*view, both);
-  const bool far = wanted->zoom && part < kTooSmall && *wanted->zoom > **zoom + kThere;
+  const bool far = goal->zoom && part < kTooSmall && *goal->zoom > **zoom + kThere;
   if (part > kTooWide || far) head.following = true;
-  if (head.following) turn(camera, head, wanted->angles, wanted->zoom, now_s);
+  if (head.following) turn(camera, head, now->angles, goal->zoom, now_s);
 }
 
 void WatchController::turn(const planning::CameraSpec& camera, Head& head, const PanTiltAngles& wanted,
@@ -107,13 +119,15 @@ void WatchController::turn(const planning::CameraSpec& camera, Head& head, const
     head.commanded_s = now_s - kPeriod_s;
   }
   const double dt = std::min(now_s - head.commanded_s, 2 * kPeriod_s);
+  const PanTiltAngles before = head.angles;
   const PanTiltAngles next{towards(head.angles.pan, wanted.pan, kTurnRate * dt),
                            towards(head.angles.tilt, wanted.tilt, kTurnRate * dt)};
-  if (!m_feed->movePanTilt(camera.pan_tilt, next.pan, next.tilt)) return;
+  const bool turns = std::abs(next.pan - before.pan) > kLeast || std::abs(next.tilt - before.tilt) > kLeast;
+  if (turns && !m_feed->movePanTilt(camera.pan_tilt, next.pan, next.tilt)) return;
   head.angles = next;
   head.commanded_s = now_s;
-  if (zoom) {
-    const double setting = towards(head.zoom, *zoom, kZoomRate * dt);
+  if (zoom && std::abs(*zoom - head.zoom) > kLeast) {
+    const double setting = towards(head.zoom, *zoom, (*zoom > head.zoom ? kZoomIn : kZoomOut) * dt);
     if (m_feed->setZoom(camera.name, setting)) head.zoom = setting;
   }
   const bool there = std::abs(next.pan - wanted.pan) < kThere && std::abs(next.tilt - wanted.tilt) < kThere &&

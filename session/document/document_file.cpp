@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "session/document/template_json.h"
 #include "vision/camera/camera_file.h"
 #include "vision/snapshot/image_file.h"
 
@@ -121,6 +122,7 @@ json worldJson(const WorldItem& item) {
               {"size", numbers(item.size.data(), 3)},
               {"margin_m", item.margin_m}, {"hidden", item.hidden}, {"role", toString(item.role)}, {"source", item.source.value}};
   for (const auto& point : item.points) out["points"].push_back(numbers(point.data(), 3));
+  if (item.kind == WorldKind::kTemplate) out.update(templateJson(item));
   return out;
 }
 
@@ -323,7 +325,7 @@ WorldItem readWorldItem(const json& value, const std::string& where) {
   item.id = {idNumber(need(value, "id", where), where + ".id", false)};
   const std::string kind = text(need(value, "kind", where), where + ".kind");
   const auto found = worldKindFrom(kind);
-  if (!found) fault(where + ".kind", "is \"" + kind + "\", expected box, slab, pipe or points");
+  if (!found) fault(where + ".kind", "is \"" + kind + "\", expected box, slab, pipe, points or template");
   item.kind = *found;
   item.name = text(need(value, "name", where), where + ".name");
   readWorldPose(need(value, "pose", where), where + ".pose", item);
@@ -339,6 +341,9 @@ WorldItem readWorldItem(const json& value, const std::string& where) {
     const json& points = value["points"];
     if (!points.is_array() || points.size() > kMaxItems) fault(where + ".points", "is not a list, or too long");
     for (const auto& point : points) item.points.push_back(vectorOf<Eigen::VectorXd>(point, 3, where + ".points"));
+  }
+  if (item.kind == WorldKind::kTemplate) {
+    if (const Status read = readTemplate(value, item); !read) fault(where, read.error().message);
   }
   if (const Status checked = checkWorldItem(item); !checked) fault(where, checked.error().message);
   return item;

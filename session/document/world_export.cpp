@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "session/document/template_json.h"
 
 namespace longarm::session {
 
@@ -197,6 +198,7 @@ std::string worldAsJson(const std::vector<WorldItem>& items) {
     const Eigen::Vector4d q = quaternionXyzw(item.X_WO.linear());
     json object = {{"name", item.name}, {"kind", toString(item.kind)}, {"size", vectorJson(item.size)},
                    {"margin_m", item.margin_m}, {"role", toString(item.role)}};
+    if (item.kind == WorldKind::kTemplate) object.update(templateJson(item));
     if (item.kind == WorldKind::kPoints) {
       for (const auto& point : item.points) object["points"].push_back(vectorJson(point));
     } else {

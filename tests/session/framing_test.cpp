@@ -74,7 +74,7 @@ TEST_F(CameraFraming, ManyRegionsStayWithinThePictureAndTheLimits) {
     m_aim.frameRegion("ptz_left", a, b);
     const double part = spread(view("ptz_left"), region);
     EXPECT_LE(part, FramingWish().fill + 0.01) << i << ": " << m_said;
-    if (m_said.empty()) EXPECT_GT(part, FramingWish().fill / 2) << i;
+    EXPECT_TRUE(!m_said.empty() || part > FramingWish().fill / 2) << i;
     for (const char* joint : {"ptz_left_pan_joint", "ptz_left_tilt_joint"}) {
       EXPECT_GE(m_robot->joint(joint), limits(joint).first);
       EXPECT_LE(m_robot->joint(joint), limits(joint).second);
@@ -84,7 +84,7 @@ TEST_F(CameraFraming, ManyRegionsStayWithinThePictureAndTheLimits) {
 
 TEST_F(CameraFraming, WhatCannotBeHadIsSaid) {
   open("ptz");
-  m_aim.framePoints("ptz_left", {{-0.5, 0.2, 3.0}, {-0.6, 0.3, 3.0}});
+  m_aim.framePoints("ptz_left", {{0.9, 0.2, 5.0}, {0.8, 0.3, 5.0}});
   EXPECT_NE(m_said.find("as far as it can"), std::string::npos) << m_said;
   m_said.clear();
   m_aim.framePoints("ptz_left", {{60, 1, 1}, {60, 1.02, 1}});
@@ -159,6 +159,7 @@ TEST_F(CameraFraming, WatchingFollowsTheToolSlowlyAndGivesWay) {
     m_cell->model->assign(m_robot->state(), q);
     return Vector3d(m_cell->model->forward(q, *m_cell->model->linkIndex(m_cell->arm.tip_link)).translation());
   };
+  for (const auto& [joint, position] : m_cell->poses.at("ready")) m_robot->setJoint(joint, position);
   m_robot->setJoint("ptz_left_pan_joint", 1.5);            // looks away
   ASSERT_GT(spread(view("ptz_left"), {tool()}), 1);
   const auto run = [&](int ticks, bool moving, bool stopped) {
@@ -180,7 +181,7 @@ TEST_F(CameraFraming, WatchingFollowsTheToolSlowlyAndGivesWay) {
   EXPECT_EQ(run(40, true, false), 0) << "the operator aims";
   const double fastest = run(120, true, false);
   EXPECT_GT(fastest, 0.1);
-  EXPECT_LE(fastest, 0.55);
+  EXPECT_LE(fastest, 0.85);
   EXPECT_LT(spread(view("ptz_left"), {tool()}), 0.8);
   EXPECT_GT(**m_robot->zoomAt("ptz_left", 0), 0.05) << "and comes closer";
   const int turns = m_robot->turns;

@@ -25,17 +25,11 @@ class ZoomTask : public ::testing::Test {
     m_cell = std::make_shared<const planning::Workcell>(testing::builtInWorkcell("ptz"));
     RuntimeOptions options;
     options.variant = "ptz";
-    options.lockstep = true;
     options.ideal = true;
-    options.gui_watchdog = false;
     options.cameras = cameras;
     options.stream_cameras = false;
-    options.virtual_robot = testing::virtualRobot();
-    auto started = RobotRuntime::start(m_cell, options);
-    ASSERT_TRUE(started.ok()) << started.error().message;
-    m_runtime = std::move(*started);
-    ASSERT_TRUE(m_runtime->waitUntilUp(20).ok());
-    ASSERT_TRUE(m_runtime->resetStop().ok());
+    m_runtime = testing::robotInLockstep(m_cell, options);
+    ASSERT_NE(m_runtime, nullptr);
     step(0.5);
   }
   void step(double seconds) { ASSERT_TRUE(m_runtime->step(seconds).ok()); }
@@ -47,11 +41,7 @@ class ZoomTask : public ::testing::Test {
   Result<vision::View> view(const std::string& camera) const {
     return cameraView(*m_cell, camera, *m_runtime->jointState(), zoom(camera));
   }
-  json truth() const {
-    const auto answer = m_runtime->callService("/virtual_robot/truth", "{}");
-    EXPECT_TRUE(answer.ok()) << answer.error().message;
-    return answer.ok() ? json::parse(*answer) : json::object();
-  }
+  json truth() const { return testing::truthOf(*m_runtime); }
   Vector3d tool() const {
     return m_cell->model->forward(*m_runtime->configuration(), *m_cell->model->linkIndex(m_cell->arm.tip_link)).translation();
   }
