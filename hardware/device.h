@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/latest_value.h"
 #include "core/motion.h"
 #include "core/result.h"
@@ -59,6 +60,16 @@ class PanTilt : public virtual Device {
   virtual double pan() const = 0;
   virtual double tilt() const = 0;
   virtual bool moving() const = 0;
+};
+
+/// A base that drives.
+class MobileBase : public virtual Device {
+ public:
+  /// Newest odometry; null before the first.
+  virtual std::shared_ptr<const BaseState> odometry() const = 0;
+  /// A velocity for the next quarter of a second: the base stops by itself when nothing follows.  Called by
+  /// MotionGate only.  kRefused unless kActive, as checkTwist().
+  virtual Status drive(const BaseTwist& twist) = 0;
 };
 
 /// One decoded-or-not picture with its time of exposure.

@@ -142,6 +142,37 @@ TEST(RosbridgeDriver, ThePanTiltMovesWithinItsLimits) {
   EXPECT_NE(refused.error().message.find("tilt"), std::string::npos) << refused.error().message;
 }
 
+TEST(RosbridgeDriver, TheBaseDrivesAndTellsItsOdometryOnTheConsolesClock) {
+  RosbridgeRig rig;
+  rig.openAndActivate();
+  ASSERT_TRUE(eventually([&] { return rig.base->odometry() != nullptr; }));
+  ASSERT_TRUE(rig.base->drive({0.2, 0, 0.1}).ok());
+  EXPECT_TRUE(eventually([&] { return rig.base->odometry()->twist.forward == 0.2; }));
+  EXPECT_NEAR(rig.base->odometry()->stamp_s, rig.steady.now_s(), 2)
+      << "not on the robot's clock, 5000 s ahead";
+  EXPECT_TRUE(eventually([&] {
+    return rig.base->odometry()->twist.still() && rig.base->odometry()->x > 0.01;
+  })) << "the robot stops by itself when nothing follows";
+  EXPECT_EQ(rig.base->drive({0.5, 0, 0}).error().code, ErrorCode::kOutOfLimits);
+  ASSERT_TRUE(rig.base->drive({0.1, 0, 0}).ok());
+  rig.base->stop();
+  EXPECT_TRUE(eventually([&] { return rig.server.base().odometry()->twist.still(); }));
+  EXPECT_EQ(rig.base->drive({0.1, 0, 0}).error().code, ErrorCode::kRefused)
+      << "idle until it is activated again";
+}
+
+TEST(RosbridgeDriver, TheBaseUsesTheTopicsOfTheWorkcell) {
+  RigOptions options;
+  options.topics = {{"/cmd_vel", "/tracks/velocity"}, {"/odom", "/tracks/odometry"}};
+  RosbridgeRig rig(options);
+  for (Device* device : rig.all()) ASSERT_TRUE(device->open().ok());
+  EXPECT_TRUE(eventually([&] { return rig.server.subscribed("/tracks/odometry"); }));
+  ASSERT_TRUE(eventually([&] { return rig.base->state() == DeviceState::kIdle; }));
+  ASSERT_TRUE(rig.base->activate().ok());
+  ASSERT_TRUE(rig.base->drive({0.1, 0, 0}).ok());
+  EXPECT_TRUE(eventually([&] { return rig.server.published("/tracks/velocity") == 1; }));
+}
+
 TEST(RosbridgeDriver, PicturesComeWhileTheCameraIsActiveAndCarryTheirExposure) {
   RosbridgeRig rig;
   rig.open();
