@@ -32,6 +32,7 @@ class WorkcellReader {
     if (const Status status = readRobot(top); !status) return status.error();
     readArm(top);
     readGripper(top);
+    readBase(top);
     readPanTilts(top);
     readCameras(top);
     readBackend(top);
@@ -167,6 +168,21 @@ class WorkcellReader {
     }
     gripper->finish();
     m_cell.gripper = std::move(spec);
+  }
+
+  void readBase(YamlSection& top) {
+    auto base = top.sectionOr("base");
+    if (!base || m_findings.error) return;
+    BaseLimits limits;
+    limits.max_speed = base->numberOr("max_speed", limits.max_speed, NumberRange::kPositive);
+    limits.max_turn = base->numberOr("max_turn", limits.max_turn, NumberRange::kPositive);
+    limits.max_acceleration =
+        base->numberOr("max_acceleration", limits.max_acceleration, NumberRange::kPositive);
+    limits.max_turn_acceleration =
+        base->numberOr("max_turn_acceleration", limits.max_turn_acceleration, NumberRange::kPositive);
+    limits.sideways = base->flagOr("sideways", false);
+    base->finish();
+    m_cell.base = limits;
   }
 
   void readPanTilts(YamlSection& top) {

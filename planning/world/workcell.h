@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/motion.h"
 #include "core/result.h"
 #include "planning/robot/robot_model.h"
@@ -56,6 +57,7 @@ struct Workcell {
   JointGroup arm;                        ///< Tip is the tool frame T (z out of the tool).
   MotionLimits arm_limits;               ///< In the order of the arm's joints; for planning and the gate.
   std::optional<GripperSpec> gripper;
+  std::optional<BaseLimits> base;  ///< A robot that drives; its root link moves with it.
   std::vector<PanTiltSpec> pan_tilts;
   std::vector<CameraSpec> cameras;
   BackendSpec backend;
