@@ -15,6 +15,8 @@ constexpr std::size_t kMaxTold = 64;
 constexpr std::size_t kMaxDelayed = 4096;
 constexpr const char* kJoints = "/joint_states";
 constexpr const char* kHolding = "/gripper_controller/holding";
+constexpr const char* kDrive = "/cmd_vel";
+constexpr const char* kOdometry = "/odom";
 
 // "NAME" of "<before>NAME<after>", or nothing.
 std::optional<std::string> between(const std::string& topic, const std::string& before, const std::string& after) {
@@ -111,6 +113,11 @@ Status RobotProtocol::command(const rosbridge::Publish& message) {
     m_body.stop();
     return {};
   }
+  if (topic == kDrive) {
+    const auto read = rosbridge::readAs<rosbridge::TwistMessage>(message.message);
+    const auto twist = read ? rosbridge::toTwist(*read) : Result<BaseTwist>(read.error());
+    return twist ? m_body.drive(*twist) : Status(twist.error());
+  }
   if (const auto name = between(topic, "/pan_tilt/", "/command")) return aim(*name, message.message);
   const auto zoomed = between(topic, "/camera/", "/zoom");
   if (topic != "/gripper_controller/command" && !zoomed) return unknownTopic(topic);
@@ -144,6 +151,7 @@ Status RobotProtocol::aim(const std::string& pan_tilt, const rosbridge::Body& me
 
 void RobotProtocol::subscribe(const rosbridge::Subscribe& wish) {
   std::set<std::string> known = {kJoints, kHolding};
+  if (m_body.base() != nullptr) known.insert(kOdometry);
   for (const auto& camera : m_rig.names()) {
     known.insert({imageTopic(camera), infoTopic(camera)});
     if (m_rig.zooms(camera)) known.insert(zoomTopic(camera));
@@ -213,6 +221,8 @@ void RobotProtocol::afterTick() {
   flushDelayed();
   if (!m_connected || !m_body.readingIsNew()) return;
   publish(kJoints, rosbridge::toMessage(m_body.measured(), m_body.measured().stamp_s));
+  if (m_body.base() != nullptr)
+    publish(kOdometry, rosbridge::toMessage(m_body.base()->odometry(), m_body.time_s()));
   publishStates();
 }
 

@@ -84,6 +84,7 @@ RobotServices::Answer RobotServices::truth() const {
   json mechanisms = json::object();
   for (const auto& mechanism : m_body.world().mechanisms()) mechanisms[mechanism.spec().name] = mechanism.value();
   return rosbridge::Body(json{{"time", m_body.time_s()},
+                              {"base", poseJson(m_body.X_WB())},
                               {"mechanisms", mechanisms},
                               {"joints", m_body.trueJoints()},
                               {"objects", objects},
