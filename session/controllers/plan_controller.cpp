@@ -46,7 +46,18 @@ void PlanController::rebuildMacros() {
   cancel();
   m_macros.reset();
   if (!m_document.workcell()) return;
-  m_macros = std::make_shared<const MacroList>(planning::makeMacros(*m_document.workcell()));
+  MacroList all = planning::makeMacros(*m_document.workcell());
+  for (const auto& motion : m_recorded) {
+    if (planning::findMacro(all, planning::macroName(motion)) == nullptr)
+      all.push_back(planning::makeRecordedMotion(motion));
+  }
+  m_macros = std::make_shared<const MacroList>(std::move(all));
+}
+
+void PlanController::setRecorded(std::vector<planning::RecordedMotion> motions) {
+  m_recorded = std::move(motions);
+  rebuildMacros();
+  Q_EMIT macrosChanged();
 }
 
 QString PlanController::whyNot(const planning::MacroInfo& info) const {
@@ -62,6 +73,10 @@ QString PlanController::whyNot(const planning::MacroInfo& info) const {
     }
     const Measurement& measured = m_document.measurement(selected);
     if (!measured.feature) return QString::fromStdString(measured.reason);
+    if (measured.stale)
+      return tr("'%1' is stale: the base was driven since its pictures were taken. Re-register it, or mark "
+                "it in new pictures.")
+          .arg(QString::fromStdString(item->name));
     const std::string& root = rootFrame(*workcell);
     if (measured.feature->parent != root) {
       return tr("'%1' is measured in frame %2, the robot stands in %3. Measure it in pictures of the robot's cameras.")
@@ -194,7 +209,14 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world()};
+  Request request{++m_generation,
+                  info.name,
+                  targetOf(QString::fromStdString(info.name)),
+                  {},
+                  std::move(avoid),
+                  m_document.world(),
+                  m_document.base(),
+                  workcell};
   if (info.takes) request.feature = *m_document.selectedFeature();
   m_progress = 0;
   m_progress_text.clear();
@@ -297,10 +319,33 @@ Status PlanController::checkFeature() const {
   return {ErrorCode::kStale, "'" + item->name + "' was moved since the plan was made. Plan again."};
 }
 
+Status PlanController::checkPlace() const {
+  if (!m_planned) return {};
+  if (m_planned->workcell != m_document.workcell()) {
+    return {ErrorCode::kStale,
+            "The calibration or the workcell was changed since the plan was made. Plan again."};
+  }
+  const auto& now = m_document.base();
+  if (!now || !m_planned->base || samePlace(*now, *m_planned->base)) return {};
+  const BaseShift shift = shiftBetween(*now, *m_planned->base);
+  return {ErrorCode::kStale, "The base has moved by " + formatFixed(shift.way * 1000, 0) + " mm and " +
+                                 formatFixed(shift.turn * 180 / M_PI, 1) +
+                                 " deg since the plan was made (10 mm and 0.5 deg are allowed). Plan again."};
+}
+
+Status PlanController::checkSurroundings() const {
+  if (const Status place = checkPlace(); !place) return place;
+  if (!m_planned || !m_planned->item.valid() || m_document.item(m_planned->item) == nullptr) return {};
+  if (!m_document.measurement(m_planned->item).stale) return {};
+  return {ErrorCode::kStale,
+          "The feature of the plan is stale: the base was driven since its pictures were taken."};
+}
+
 Status PlanController::checkFresh(const JointState& now, double tolerance) const {
   if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan. Choose a macro."};
   const planning::Plan& plan = m_document.plan()->plan;
   if (!plan.ok()) return {ErrorCode::kRefused, "The plan failed: " + plan.reason};
+  if (const Status around = checkSurroundings(); !around) return around;
   if (const Status feature = checkFeature(); !feature) return feature;
   if (m_planned && m_planned->world != m_document.world()) {
     return {ErrorCode::kStale, "The sketched world was changed since the plan was made. Plan again."};

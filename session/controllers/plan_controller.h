@@ -15,6 +15,7 @@
 
 #include "core/cancel.h"
 #include "planning/macros/macro.h"
+#include "planning/macros/recorded_motion.h"
 #include "session/controllers/held_controller.h"
 #include "session/controllers/job_runner.h"
 #include "session/document/document.h"
@@ -56,6 +57,9 @@ class PlanController final : public QObject {
   void setSeed(unsigned seed) { m_seed = seed; }
   void setBudget(double seconds) { m_budget_s = seconds; }
 
+  /// Motions to list beside the canned ones.
+  void setRecorded(std::vector<planning::RecordedMotion> motions);
+
   /// What the operator has set, for whatever workcell; what does not fit this one's macros is not used.
   const MacroSettings& settings() const { return m_settings; }
   void setSettings(MacroSettings settings);
@@ -89,9 +93,13 @@ class PlanController final : public QObject {
   QString whyNotOtherWay() const;                      ///< Empty when there is a plan to find another way than.
   void discard();                                      ///< Clears the plan.
 
-  /// Whether the plan may be played from these joints: there is one, it is ok, its feature is as it was, and its
-  /// start lies within `tolerance` [rad or m] of them.  The message names the joint, the difference, the limit.
+  /// Whether the plan may be played from these joints: there is one, it is ok, its feature, the sketched
+  /// world and the calibration are as they were, the base stands where it stood (10 mm, 0.5 deg), and its
+  /// start lies within `tolerance` [rad or m] of them.  The message names what changed, by how much, the
+  /// limit.
   Status checkFresh(const JointState& now, double tolerance = 0.01) const;
+  /// The part of checkFresh() that also holds for a motion under way.
+  Status checkSurroundings() const;
 
  Q_SIGNALS:
   void macrosChanged();
@@ -111,6 +119,8 @@ class PlanController final : public QObject {
     std::optional<vision::Feature> feature;
     std::vector<Eigen::VectorXd> avoid;
     std::vector<WorldItem> world;
+    std::optional<BaseState> base;
+    std::shared_ptr<const planning::Workcell> workcell;
   };
 
   void rebuildMacros();
@@ -123,12 +133,14 @@ class PlanController final : public QObject {
   const planning::Macro* macro(const QString& name) const;
   void deliver(const Request& request, Result<planning::Plan> result);
   Status checkFeature() const;
+  Status checkPlace() const;
   void pollProgress();
   void setState(State state);
 
   Document& m_document;
   JobRunner& m_jobs;
   std::shared_ptr<const MacroList> m_macros;
+  std::vector<planning::RecordedMotion> m_recorded;
   std::function<std::shared_ptr<const JointState>()> m_joints;
   const HeldController* m_held = nullptr;
   State m_state = State::kIdle;

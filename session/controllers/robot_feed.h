@@ -4,8 +4,10 @@
 /// RobotFeed: what snapshots and aiming need of a connected robot, and nothing more.
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "core/base_motion.h"
 #include "core/motion.h"
 #include "core/result.h"
 #include "hardware/device.h"
@@ -24,6 +26,8 @@ class RobotFeed {
   virtual std::shared_ptr<const JointState> jointState() const = 0;
   /// Interpolated; kStale outside the last seconds.
   virtual Result<JointState> jointStateAt(double stamp_s) const = 0;
+  /// Newest odometry; empty: none, or no base.
+  virtual std::optional<BaseState> base() const { return std::nullopt; }
   /// Sends a pan-tilt of the workcell to these angles [rad].
   virtual Status movePanTilt(const std::string& pan_tilt, double pan, double tilt) = 0;
 };

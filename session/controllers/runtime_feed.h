@@ -18,6 +18,7 @@ class RuntimeFeed final : public RobotFeed {
   }
   std::shared_ptr<const JointState> jointState() const override { return m_runtime.jointState(); }
   Result<JointState> jointStateAt(double stamp_s) const override { return m_runtime.jointStateAt(stamp_s); }
+  std::optional<BaseState> base() const override { return m_runtime.status().base; }
   Status movePanTilt(const std::string& pan_tilt, double pan, double tilt) override {
     return m_runtime.movePanTilt(pan_tilt, pan, tilt);
   }

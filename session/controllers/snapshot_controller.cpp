@@ -22,6 +22,8 @@ SnapshotController::SnapshotController(Document& document, EditHistory& history,
 QString SnapshotController::whyNot() const {
   if (m_feed == nullptr) return tr("No robot is connected. Connect one, or open pictures from files.");
   if (!m_document.workcell()) return tr("No workcell is loaded, so that no camera is known.");
+  const auto base = m_feed->base();
+  if (base && !base->twist.standing()) return tr("The base is driving: let it come to rest first.");
   if (m_state != State::kIdle) return tr("Pictures are being taken.");
   return {};
 }
@@ -54,6 +56,9 @@ void SnapshotController::request(std::vector<std::string> cameras, PaneSide side
 void SnapshotController::poll() {
   if (m_state != State::kWaiting) return;
   if (m_feed == nullptr) return fail("The robot was disconnected while a picture was being taken.");
+  // Odometry is not kept by time: the base must stand from the request on.
+  if (const auto base = m_feed->base(); base && !base->twist.standing())
+    return fail("The base began to drive while a picture was being taken.");
   collect();
   if (complete()) {
     auto chosen = choose();
@@ -61,16 +66,19 @@ void SnapshotController::poll() {
       m_timer.stop();
       const auto workcell = m_document.workcell();
       const double to_wall_s = wallTime_s() - m_feed->now_s();
-      return decode([workcell, to_wall_s, frames = std::move(*chosen)]() -> Result<Snapshots> {
-        Snapshots snapshots;
-        for (const auto& frame : frames) {
-          auto snapshot = makeSnapshot(*workcell, frame);
-          if (!snapshot) return snapshot.error();
-          snapshot->wall_time_s = snapshot->stamp_s + to_wall_s;
-          snapshots.push_back(std::move(*snapshot));
-        }
-        return snapshots;
-      }, m_side);
+      return decode(
+          [workcell, to_wall_s, base = m_feed->base(), frames = std::move(*chosen)]() -> Result<Snapshots> {
+            Snapshots snapshots;
+            for (const auto& frame : frames) {
+              auto snapshot = makeSnapshot(*workcell, frame);
+              if (!snapshot) return snapshot.error();
+              snapshot->wall_time_s = snapshot->stamp_s + to_wall_s;
+              snapshot->base = base;
+              snapshots.push_back(std::move(*snapshot));
+            }
+            return snapshots;
+          },
+          m_side);
     }
     m_refusal = chosen.error().message;
   }

@@ -88,6 +88,7 @@ FeatureRow featureRow(const SketchItem& item, const Measurement& measurement) {
   row.reason = measurement.reason;
   if (!measurement.feature || measurement.feature->vertices.empty()) return row;
   row.measured = true;
+  row.stale = measurement.stale;
   fillNumbers(row, *measurement.feature);
   fillTexts(row);
   return row;

@@ -19,6 +19,7 @@ struct FeatureRow {
   bool hidden = false, locked = false, selected = false, primary = false;
   std::optional<std::uint32_t> colour;
   bool measured = false;
+  bool stale = false;                          ///< Measured from where the base no longer is.
   std::string reason;                          ///< Why it is not measured: what to do.
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();   ///< Point, or middle of a line, plane or box [m].
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero(); ///< 1 sigma per axis [m].

@@ -30,6 +30,7 @@ void addText(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel, s
 std::string labelOf(const SketchItem& item, const Measurement& measurement) {
   const std::string note = item.note.empty() ? std::string() : "  \u2013 " + item.note;
   if (!measurement.feature) return item.name + note;
+  if (measurement.stale) return item.name + "  stale: the base was driven" + note;
   const FeatureRow row = featureRow(item, measurement);
   if (row.length) return item.name + "  " + row.length_text + note;
   return item.name + "  \u00b1 " + millimetreText(row.plus_minus) + note;
@@ -37,7 +38,7 @@ std::string labelOf(const SketchItem& item, const Measurement& measurement) {
 
 OverlayRole labelRole(const Measurement& measurement) {
   const bool warns = measurement.feature && !measurement.feature->warnings.empty();
-  return warns ? OverlayRole::kWarning : OverlayRole::kLabel;
+  return warns || measurement.stale ? OverlayRole::kWarning : OverlayRole::kLabel;
 }
 
 void addEllipses(Overlay& overlay, const vision::View& view, const vision::Feature& feature) {

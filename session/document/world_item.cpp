@@ -151,6 +151,15 @@ std::optional<WorldRole> worldRoleFrom(const std::string& word) {
   return std::nullopt;
 }
 
+namespace {
+
+bool sameBase(const std::optional<BaseState>& a, const std::optional<BaseState>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return sameBits(a->x, b->x) && sameBits(a->y, b->y) && sameBits(a->yaw, b->yaw);
+}
+
+}  // namespace
+
 bool operator==(const WorldItem& a, const WorldItem& b) {
   if (a.points.size() != b.points.size()) return false;
   for (std::size_t i = 0; i < a.points.size(); ++i) {
@@ -158,7 +167,8 @@ bool operator==(const WorldItem& a, const WorldItem& b) {
   }
   return a.id == b.id && a.kind == b.kind && a.name == b.name && a.parent == b.parent &&
          sameBits(a.X_WO.matrix().reshaped(), b.X_WO.matrix().reshaped()) && sameBits(a.size, b.size) &&
-         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.role == b.role && a.source == b.source;
+         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.role == b.role &&
+         a.source == b.source && sameBase(a.base, b.base);
 }
 
 std::uint64_t hashOf(const WorldItem& item) {
@@ -183,6 +193,9 @@ std::uint64_t hashOf(const WorldItem& item) {
   mixNumber(item.margin_m);
   mix((item.hidden ? 1U : 0U) | (static_cast<std::uint64_t>(item.role) << 1U));
   mix(item.source.value);
+  if (item.base) {
+    for (const double value : {item.base->x, item.base->y, item.base->yaw}) mixNumber(value);
+  }
   return hash;
 }
 

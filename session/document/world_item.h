@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/ids.h"
 #include "core/pose.h"
 #include "core/result.h"
@@ -54,6 +55,7 @@ struct WorldItem {
   bool hidden = false;
   WorldRole role = WorldRole::kObstacle;
   FeatureId source;                                          ///< It came from; may be gone.
+  std::optional<BaseState> base;  ///< Where the robot's base stood then; empty: unknown.
 
   friend bool operator==(const WorldItem& a, const WorldItem& b);
   friend bool operator!=(const WorldItem& a, const WorldItem& b) { return !(a == b); }

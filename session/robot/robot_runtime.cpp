@@ -171,12 +171,18 @@ RuntimeStatus RobotRuntime::status() const {
   const auto motion = core->loop().state();
   out.player = motion.player;
   out.cursor = motion.cursor;
+  out.arm_cursor = motion.arm_cursor;
   out.duration = motion.duration;
   out.rate = motion.rate;
   out.speed = motion.speed;
   out.notice = motion.notice;
   out.jogging = motion.jogging;
   out.jog = motion.jog;
+  out.driving = motion.drive.driving;
+  out.drive_notice = motion.drive.notice;
+  if (core->devices().base) {
+    if (const auto odometry = core->devices().base->odometry()) out.base = *odometry;
+  }
   out.faults = core->faults();
   core->describeMotion(out);
   return out;
@@ -234,16 +240,20 @@ void RobotRuntime::unload() {
   if (const auto core = m_impl->current()) core->loop().unload();
 }
 
-Status RobotRuntime::play() {
+Status RobotRuntime::play(const PlayOrder& order) {
   const auto core = m_impl->current();
   if (!core) return Impl::noRobot();
   const auto link = core->link();
   auto status = link.state == LinkState::kUp
-                    ? core->loop().play()
+                    ? core->loop().play(order)
                     : Status{ErrorCode::kStale,
                              "play: the link is " + std::string(toString(link.state)) + ": " + link.text};
   m_impl->queue(status ? "play" : "refused", "operator", status ? "" : status.error().message);
   return status;
+}
+
+void RobotRuntime::keepRunning() {
+  if (const auto core = m_impl->current()) core->loop().keepRunning();
 }
 
 void RobotRuntime::pause() {
@@ -271,6 +281,16 @@ Status RobotRuntime::jog(const planning::JogCommand& command) {
 
 void RobotRuntime::releaseJog() {
   if (const auto core = m_impl->current()) core->loop().releaseJog();
+}
+
+Status RobotRuntime::drive(const BaseTwist& wanted) {
+  const auto core = m_impl->current();
+  if (!core) return Impl::noRobot();
+  return core->loop().drive(wanted);
+}
+
+void RobotRuntime::releaseDrive() {
+  if (const auto core = m_impl->current()) core->loop().releaseDrive();
 }
 
 void RobotRuntime::setObstacles(const std::vector<planning::WorldObject>& objects) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hardware/drivers/rosbridge/rosbridge_arm.h"
+#include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
@@ -73,6 +74,8 @@ Result<DeviceSet> makeRosbridgeDevices(const planning::Workcell& workcell, const
   robot.state = std::make_shared<hardware::RobotState>(robot.link, topics.jointStates());
   robot.clock = &clock;
   set.arm = std::make_shared<hardware::RosbridgeArm>("arm", robot, topics);
+  if (workcell.base)
+    set.base = std::make_shared<hardware::RosbridgeBase>("base", robot, *workcell.base, topics);
   if (workcell.gripper) {
     const auto& spec = *workcell.gripper;
     set.gripper = std::make_shared<hardware::RosbridgeGripper>(

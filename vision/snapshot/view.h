@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
+#include "core/base_motion.h"
 #include "core/ids.h"
 #include "core/motion.h"
 #include "core/pose.h"
@@ -44,6 +45,7 @@ struct Snapshot {
   double stamp_s = 0;                        ///< Monotonic time of exposure [s].
   double wall_time_s = 0;                    ///< Wall time, for display and records [s since 1970].
   JointState robot_state;                    ///< Joints at the exposure; empty for pictures from files.
+  std::optional<BaseState> base;             ///< Odometry at the exposure; empty: no base, or from files.
   std::string source;                        ///< "live", or the path of the file.
 };
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
