@@ -39,6 +39,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kAddToWorld, "Sketch", "Add to &world", "world-add", "Ctrl+B", "Make the selected box, plane, pipe or points a body that plans keep clear of"},
       {I::kAddKeepOut, "Sketch", "Add as &keep-out zone", "", "Ctrl+Shift+B", "Make the selected box, plane, pipe or points a zone that the arm and what it holds never enter"},
       {I::kAddWorkspace, "Sketch", "Add workspace bo&x", "", "", "Put a box around the arm that it does not leave; change its numbers in the list of bodies"},
+      {I::kReregister, "Sketch", "&Re-register after driving", "", "", "Move everything that is stale to where it is now, by three or more corners marked again under the same names"},
 
       {I::kTaskTarget, "View", "Tar&get", "", "F5", "Take pictures, mark what matters, plan and play"},
       {I::kTaskCalibrate, "View", "&Calibrate", "", "F7", "Find out lenses and places of the cameras"},
@@ -72,6 +73,10 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kCancelPlanning, "Robot", "&Cancel planning", "plan-cancel", "Ctrl+.", "Give up planning"},
       {I::kPlayPause, "Robot", "Play or pause", "transport-play", "P", "Move the arm along the plan, or slow down and hold"},
       {I::kBackUp, "Robot", "Back up", "transport-back-up", "B", "Move the arm back along its path"},
+      {I::kStage, "Robot", "Play one stage", "transport-stage", "Shift+P", "Move the arm to the end of this stage and rest there"},
+      {I::kStageBack, "Robot", "Back up one stage", "transport-stage-back", "Shift+B", "Move the arm back to the start of this stage and rest there"},
+      {I::kHoldToRun, "Robot", "Hold to run", "", "", "The arm moves only while Play, Back up or their key is held; letting go pauses it", true},
+      {I::kAutoPlay, "Robot", "Play at once (auto-play)", "", "", "A motion that is planned by its button moves at once, without Play", true},
       {I::kStepBack, "Robot", "Step back", "", ",", "Show the motion 0.1 s earlier; moves nothing"},
       {I::kStepForward, "Robot", "Step forward", "", ".", "Show the motion 0.1 s later; moves nothing"},
       {I::kSlower, "Robot", "Slower", "", "-", "Lower the speed by 10 %; below zero it backs up"},

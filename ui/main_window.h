@@ -11,6 +11,7 @@
 #include "ui/actions.h"
 #include "ui/calibrate_page.h"
 #include "ui/cameras_panel.h"
+#include "ui/drive_panel.h"
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
 #include "ui/head_panel.h"
@@ -20,6 +21,7 @@
 #include "ui/notice_bar.h"
 #include "ui/nudge_panel.h"
 #include "ui/pictures_area.h"
+#include "ui/recorded_panel.h"
 #include "ui/scene_panel.h"
 #include "ui/sketch_actions.h"
 #include "ui/sketch_edits.h"
@@ -53,6 +55,8 @@ class MainWindow final : public QMainWindow {
   MacroPanel* macros() const { return m_macros; }
   HeadPanel* head() const { return m_head; }
   JogPanel* jog() const { return m_jog; }
+  DrivePanel* drive() const { return m_drive; }
+  RecordedPanel* recorded() const { return m_recorded; }
   MotionPanel* motion() const { return m_motion; }
   StopPanel* stopPanel() const { return m_stop; }
   SnapshotsPanel* snapshots() const { return m_snapshots; }
@@ -91,6 +95,7 @@ class MainWindow final : public QMainWindow {
   void showTitle();
   void showPlanNotice();
   void showAccuracyNotice();
+  void showHaltNotice();
   void showLinkNotice();
   void showAbout();
 
@@ -114,6 +119,8 @@ class MainWindow final : public QMainWindow {
   NudgePanel* m_nudge;
   MacroPanel* m_macros;
   JogPanel* m_jog;
+  DrivePanel* m_drive;
+  RecordedPanel* m_recorded;
   HeadPanel* m_head;
   MotionPanel* m_motion;
   StopPanel* m_stop;

@@ -80,6 +80,7 @@ void SceneContents::setSketch(const session::Document& document) {
     drawn.feature = *measured;
     drawn.selected = document.selection().contains(item.id);
     drawn.visible = !item.hidden;
+    drawn.stale = document.measurement(item.id).stale;
     items.push_back(std::move(drawn));
   }
   m_sketch.update(items);

@@ -22,6 +22,7 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
   connect(actions.at(ActionId::kNumbers), &QAction::triggered, this, &SketchEdits::showNumbers);
   connect(actions.at(ActionId::kColour), &QAction::triggered, this, &SketchEdits::askColour);
   connect(actions.at(ActionId::kExportWorld), &QAction::triggered, this, &SketchEdits::browseExport);
+  connect(actions.at(ActionId::kReregister), &QAction::triggered, &bench, &Workbench::reregister);
   const auto tell = [this](const Status& done) {
     if (!done) m_bench.say(QString::fromStdString(done.error().message));
   };
@@ -36,6 +37,7 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
 
 void SketchEdits::refresh() {
   for (const auto id : {ActionId::kAddToWorld, ActionId::kAddKeepOut}) m_actions.setWhyNot(id, m_bench.world().whyNotAdd());
+  m_actions.setWhyNot(ActionId::kReregister, m_bench.whyNotReregister());
   m_actions.setWhyNot(ActionId::kExportWorld, m_bench.world().items().empty() ? tr("Nothing was added to the world yet.") : QString());
 }
 

@@ -21,10 +21,12 @@ class SketchWatch final : public QObject {
  private:
   void refresh();
   void refreshBaseline();
+  void refreshStale();
 
   Workbench& m_bench;
   NoticeBar& m_notices;
   QString m_baseline_said;
+  QString m_stale_said;
   QString m_said;                          // Shown, or answered.
 };
 

@@ -18,11 +18,14 @@
 #include "session/calibration/zoom_controller.h"
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
+#include "session/controllers/drive_controller.h"
 #include "session/controllers/held_controller.h"
 #include "session/controllers/jog_controller.h"
 #include "session/controllers/match_controller.h"
+#include "session/controllers/motion_recorder.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/play_controller.h"
+#include "session/controllers/play_hand.h"
 #include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
@@ -60,9 +63,12 @@ class Workbench final : public QObject {
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
+  session::PlayHand& hand() { return m_hand; }
   session::ReachController& reach() { return m_reach; }
   session::AimController& aim() { return m_aim; }
   session::JogController& jog() { return m_jog; }
+  session::DriveController& drive() { return m_drive; }
+  session::MotionRecorder& recorder() { return m_recorder; }
   session::Autosave& autosave() { return m_autosave; }
   session::CalibrationController& calibration() { return m_calibration; }
   session::PoseController& pose() { return m_pose; }
@@ -85,9 +91,18 @@ class Workbench final : public QObject {
   QString whyNotTakePair() const;
   void takePair();
 
+  /// Why the base cannot be driven now; empty: it can.
+  QString whyNotDrive() const;
   /// Why no motion can be planned now beyond what the controller knows; empty: it can.
   QString whyNotPlan() const;
   void plan(const QString& macro);
+  /// A motion asked for by plan() is played as soon as it is found, where nothing speaks against it and
+  /// nothing must be held.  Off at first, and off again whenever a live robot is connected.
+  void setAutoPlay(bool on);
+  /// Why what is stale cannot be moved by marks made again; empty: it can.
+  QString whyNotReregister() const;
+  void reregister();
+  bool autoPlay() const { return m_auto_play; }
   void replan();
   void planOtherWay();
   /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
@@ -98,6 +113,7 @@ class Workbench final : public QObject {
  Q_SIGNALS:
   void said(const QString& sentence);
   void paneCameraChanged(longarm::vision::PaneSide side);
+  void autoPlayChanged();
 
  private:
   void connectParts();
@@ -109,6 +125,7 @@ class Workbench final : public QObject {
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
   void lookAtReach();
+  void playAtOnce(bool planned);
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -122,9 +139,13 @@ class Workbench final : public QObject {
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;
+  session::PlayHand m_hand;
   session::ReachController m_reach;
   session::AimController m_aim;
   session::JogController m_jog;
+  session::DriveController m_drive;
+  session::MotionRecorder m_recorder;
+  QString m_motion_folder;
   session::Autosave m_autosave;
   session::CalibrationController m_calibration;
   session::PoseController m_pose;
@@ -134,6 +155,7 @@ class Workbench final : public QObject {
   session::ZoomController m_zoom;
   session::HealthController m_health;
   std::array<QString, 2> m_pane_cameras;
+  bool m_auto_play = false, m_play_when_planned = false;
 };
 
 }  // namespace longarm::ui

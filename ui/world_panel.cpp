@@ -78,9 +78,19 @@ void WorldPanel::fillRow(int row, const WorldItem& item) {
   const bool round = item.kind == WorldKind::kPipe || item.kind == WorldKind::kPoints;   // one diameter
   const bool cloud = item.kind == WorldKind::kPoints;
   const auto place = [&](int axis) { return cloud ? QString() : number(item.X_WO.translation()(axis)); };
-  const QString texts[] = {QString::fromStdString(item.name), QString::fromLatin1(session::toString(item.kind)), number(item.size.x()),
-                           round ? QString() : number(item.size.y()), cloud ? QString() : number(item.size.z()),
-                           number(item.margin_m), place(0), place(1), place(2), {}, {}};
+  const bool stale = m_bench.document().stale(item);
+  const QString texts[] = {
+      QString::fromStdString(item.name),
+      QString::fromLatin1(session::toString(item.kind)) + (stale ? tr(", stale") : QString()),
+      number(item.size.x()),
+      round ? QString() : number(item.size.y()),
+      cloud ? QString() : number(item.size.z()),
+      number(item.margin_m),
+      place(0),
+      place(1),
+      place(2),
+      {},
+      {}};
   for (int column = 0; column < kColumns; ++column) {
     auto* cell = new QTableWidgetItem(texts[column]);
     Qt::ItemFlags flags = Qt::ItemIsSelectable | Qt::ItemIsEnabled;

@@ -109,5 +109,37 @@ TEST_F(WindowWithRobot, JogsTheArmWhileAButtonIsHeld) {
   EXPECT_EQ(bench->robot().status().gate.refused, 0u) << bench->robot().status().gate.reason;
 }
 
+TEST_F(WindowWithRobot, DrivesTheBaseWhileAButtonIsHeldAndMarksWhatWasMeasuredBefore) {
+  openWithRobot({1920, 1080});
+  ASSERT_TRUE(hand.hold(
+      window->stopPanel()->resetButton(), [this] { return !bench->robot().status().gate.stopped; }, 10));
+  window->findChild<QDockWidget*>(QStringLiteral("drive"))->raise();
+  SimulatedHand::pump(100);
+  auto* ahead = window->drive()->button(ui::DrivePanel::Way::kForward);
+  ASSERT_TRUE(SimulatedHand::waitFor([&] { return ahead->isEnabled(); }, 10))
+      << window->drive()->message().toStdString();
+  const auto gone = [this] { return bench->robot().status().base ? bench->robot().status().base->x : 0; };
+  ASSERT_TRUE(hand.hold(
+      ahead, [&] { return gone() > 0.05; }, 20))
+      << window->drive()->message().toStdString();
+  look(QStringLiteral("drive"));
+  EXPECT_TRUE(SimulatedHand::waitFor([this] { return !bench->robot().status().driving; }, 5));
+  const double there = gone();
+  SimulatedHand::pump(500);
+  EXPECT_NEAR(gone(), there, 0.002);
+  EXPECT_EQ(bench->robot().status().gate.refused, 0u) << bench->robot().status().gate.reason;
+  ASSERT_TRUE(bench->document().base().has_value());
+  EXPECT_NEAR(bench->document().base()->x, there, 0.002);
+  bench->plan(QStringLiteral("stow"));
+  ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->play().state().can_play; }, 60))
+      << bench->play().state().why_not_play.toStdString();
+  ASSERT_TRUE(hand.hold(
+      window->drive()->button(ui::DrivePanel::Way::kTurnLeft),
+      [this] { return bench->robot().status().base->yaw > 0.05; }, 20));
+  EXPECT_TRUE(SimulatedHand::waitFor([this] { return bench->play().state().stale; }, 10))
+      << "planned from another place";
+  EXPECT_TRUE(window->notices()->has(QStringLiteral("plan")));
+}
+
 }  // namespace
 }  // namespace longarm

@@ -145,7 +145,9 @@ void SketchRep::update(const std::vector<SketchItem>& items) {
     const std::vector<Eigen::Vector3d> corners = cornersOf(item.feature);
     const bool finite = std::all_of(corners.begin(), corners.end(), [](const auto& p) { return p.allFinite(); });
     if (!item.visible || corners.empty() || !finite) continue;
-    const Eigen::Vector3d color = item.selected ? m_impl->look.selected_color : m_impl->look.color;
+    const Eigen::Vector3d color = item.stale      ? m_impl->look.stale_color
+                                  : item.selected ? m_impl->look.selected_color
+                                                  : m_impl->look.color;
     addProp(makeMarks(corners, edgesOf(item.feature.kind), item.feature.vertices.size(), color, item.selected));
     if (const auto solid = makeSolid(item.feature, color)) addProp(solid);
     if (m_impl->look.ellipsoids) {
