@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/latest_value.h"
 #include "core/motion.h"
 #include "core/result.h"
@@ -61,6 +62,16 @@ class PanTilt : public virtual Device {
   virtual bool moving() const = 0;
 };
 
+/// A base that drives.
+class MobileBase : public virtual Device {
+ public:
+  /// Newest odometry; null before the first.
+  virtual std::shared_ptr<const BaseState> odometry() const = 0;
+  /// A velocity for the next quarter of a second: the base stops by itself when nothing follows.  Called by
+  /// MotionGate only.  kRefused unless kActive, as checkTwist().
+  virtual Status drive(const BaseTwist& twist) = 0;
+};
+
 /// One decoded-or-not picture with its time of exposure.
 struct Frame {
   std::string camera;
@@ -71,10 +82,26 @@ struct Frame {
   std::string data;                      ///< Encoded bytes.
 };
 
+/// Settings of lens and focus run from 0 to 1 over their whole travel: 0 is wide and near.  The zoom may be made of an
+/// optical and a digital part.
 class Camera : public virtual Device {
  public:
   virtual std::shared_ptr<const Frame> latestFrame() const = 0;   ///< Null before the first.
-  virtual Status setZoom(double /*zoom01*/) { return {ErrorCode::kRefused, name() + ": this camera has no zoom"}; }
+  /// Whether zoom and focus can be commanded.
+  virtual bool zooms() const { return false; }
+  virtual Status setZoom(double /*zoom01*/) { return noZoom(); }
+  virtual Status setFocus(double /*focus01*/) { return noZoom(); }
+  virtual Status focusItself() { return noZoom(); }               ///< Until the next setFocus().
+  /// As the camera tells it, newest; kStale before the first.
+  virtual Result<double> zoom() const { return noZoom(); }
+  virtual Result<double> focus() const { return noZoom(); }
+  /// The zoom at a time on the console's clock; kStale outside the last seconds.
+  virtual Result<double> zoomAt(double /*stamp_s*/) const { return noZoom(); }
+  /// Ends a change of zoom or focus under way; pictures go on.  Any thread, no waiting.
+  virtual void haltLens() noexcept {}
+
+ private:
+  Error noZoom() const { return {ErrorCode::kRefused, name() + ": this camera has no zoom"}; }
 };
 
 }  // namespace longarm::hardware

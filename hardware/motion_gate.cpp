@@ -27,6 +27,7 @@ struct Leg {
   bool inForce(double now_s) const { return now_s - start_s < path.duration(); }
 };
 
+constexpr double kDriveForce_s = 0.25;   // how long a base goes on after a command
 constexpr std::size_t kLegsKept = 64;    // more than a second at 50 Hz
 
 std::shared_ptr<const Leg> legOf(const Horizon& horizon) {
@@ -47,6 +48,10 @@ struct MotionGate::Impl {
   std::mutex submit_mutex;               // one submitter, reset or acquire at a time; stop() never takes it
   std::optional<std::uint64_t> last_sequence;
   std::optional<double> apart_since;     // measured and commanded joints have been apart
+
+  std::shared_ptr<MobileBase> base;
+  BaseLimits base_limits;
+  std::atomic<double> driven_until_s{-1e9};  // a command is in force till then
 
   std::atomic<bool> stopped{true};
   std::atomic<std::uint64_t> stops{0}, accepted{0}, refused{0};
@@ -98,6 +103,8 @@ struct MotionGate::Impl {
                    const char* what) const;
   void followUp(double now_s, std::string& complaint);
   void brake() noexcept;
+  bool baseMoves(double now_s) const;
+  Status checkDrive(const std::string& by, const BaseTwist& twist, double now_s) const;
 };
 
 MotionGate::MotionGate(std::shared_ptr<RobotArm> arm, std::vector<std::string> joints, MotionLimits limits,
@@ -202,6 +209,7 @@ Status MotionGate::Impl::checkStart(const Horizon& h, const JointState& measured
 
 Status MotionGate::Impl::checkAll(const Horizon& horizon, double now_s) {
   if (auto status = checkAuthority(horizon); !status) return status;
+  if (baseMoves(now_s)) return {ErrorCode::kRefused, "the base is driving; the arm moves when it stands"};
   if (auto status = checkHorizon(horizon, joints, limits, options); !status) return status;
   const auto state = freshState(now_s);
   if (!state) return state.error();
@@ -228,6 +236,65 @@ Status MotionGate::submit(const Horizon& horizon) {
   // STOP may have come between the check and the sending, and its command before ours: brake again.
   if (m_impl->stopped || m_impl->stops != stops_before) {
     m_impl->brake();
+    return m_impl->refuse({ErrorCode::kRefused, "STOP was pressed"});
+  }
+  ++m_impl->accepted;
+  return {};
+}
+
+void MotionGate::setBase(std::shared_ptr<MobileBase> base, const BaseLimits& limits) {
+  std::lock_guard<std::mutex> submit_lock(m_impl->submit_mutex);
+  m_impl->base = std::move(base);
+  m_impl->base_limits = limits;
+}
+
+bool MotionGate::Impl::baseMoves(double now_s) const {
+  if (base == nullptr) return false;
+  if (now_s < driven_until_s) return true;
+  const auto odometry = base->odometry();
+  if (odometry == nullptr || now_s - odometry->stamp_s > options.max_state_age_s) return false;
+  return !odometry->twist.standing();
+}
+
+bool MotionGate::driving() const { return m_impl->baseMoves(m_impl->clock.now_s()); }
+
+Status MotionGate::Impl::checkDrive(const std::string& by, const BaseTwist& twist, double now_s) const {
+  if (base == nullptr) return {ErrorCode::kRefused, "this robot has no base that can be driven"};
+  if (stopped) return {ErrorCode::kRefused, "drive: STOP is latched; release it first"};
+  const std::string has = currentOwner();
+  if (by.empty() || by != has) {
+    return {ErrorCode::kRefused, "\"" + by + "\" may not drive: " +
+                                     (has.empty() ? "nobody has taken the robot" : "\"" + has + "\" has it")};
+  }
+  if (auto status = checkTwist(twist, base_limits); !status) return status;
+  if (twist.still()) return {};
+  const auto leg = legAt(now_s);
+  if (leg != nullptr && leg->inForce(now_s))
+    return {ErrorCode::kRefused, "drive: the arm still moves; it must be held"};
+  const auto odometry = base->odometry();
+  if (odometry == nullptr) return {ErrorCode::kStale, "drive: no odometry has come from the robot yet"};
+  const double age = now_s - odometry->stamp_s;
+  if (!(std::abs(age) <= options.max_state_age_s)) {
+    return {ErrorCode::kStale, "drive: the odometry is " + formatFixed(age, 3) + " s old; the limit is " +
+                                   formatFixed(options.max_state_age_s, 3) + " s"};
+  }
+  return {};
+}
+
+Status MotionGate::drive(const std::string& owner, const BaseTwist& twist) {
+  std::lock_guard<std::mutex> submit_lock(m_impl->submit_mutex);
+  const std::uint64_t stops_before = m_impl->stops;
+  const double now_s = m_impl->clock.now_s();
+  try {
+    if (auto status = m_impl->checkDrive(owner, twist, now_s); !status) return m_impl->refuse(status.error());
+    if (!twist.still()) m_impl->driven_until_s = now_s + kDriveForce_s;
+    if (auto status = m_impl->base->drive(twist); !status) return m_impl->refuse(status.error());
+  } catch (const std::exception& e) {
+    return m_impl->refuse({ErrorCode::kInternal, std::string("the base's driver failed: ") + e.what()});
+  }
+  // As in submit(): STOP may have been told to the base before our command.
+  if (m_impl->stopped || m_impl->stops != stops_before) {
+    m_impl->base->stop();
     return m_impl->refuse({ErrorCode::kRefused, "STOP was pressed"});
   }
   ++m_impl->accepted;
@@ -289,6 +356,8 @@ void MotionGate::Impl::brake() noexcept {
   } catch (...) {  // the arm's own stop follows
   }
   arm->stop();
+  if (base != nullptr) base->stop();
+  driven_until_s = -1e9;
 }
 
 void MotionGate::stop(const std::string& source, const std::string& reason) noexcept {
@@ -322,6 +391,9 @@ Status MotionGate::reset() {
   const std::uint64_t stops_before = m_impl->stops;
   if (m_impl->arm->state() == DeviceState::kIdle) {
     if (auto status = m_impl->arm->activate(); !status) return status;
+  }
+  if (m_impl->base != nullptr && m_impl->base->state() == DeviceState::kIdle) {
+    if (auto status = m_impl->base->activate(); !status) return status;
   }
   const DeviceState state = m_impl->arm->state();
   if (state != DeviceState::kActive) {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// MotionGate: the one way to the arm.  Refuses stale state, jumps, broken limits and unowned motion.
+/// MotionGate: the one way to arm and base.  Refuses stale state, jumps, broken limits and unowned motion.
 
 #include <cstdint>
 #include <functional>
@@ -69,6 +69,16 @@ class MotionGate {
   /// Beyond checkHorizon(): ownership, growing sequence, start time near now, fresh joint state, start that
   /// continues what is commanded in position and velocity (or, from rest, the measured joints), `checks`.
   Status submit(const Horizon& horizon);
+
+  /// A base that the gate also guards; without one drive() is refused.  Call before anything moves.
+  void setBase(std::shared_ptr<MobileBase> base, const BaseLimits& limits);
+  /// Checks a velocity and passes it on.  Arm and base have one owner between them, so that one stands while
+  /// the other moves.  kRefused: no base, no owner, STOP latched, the arm still moves; kStale: odometry older
+  /// than max_state_age_s; else as checkTwist().  Stopping (a twist of zero) by the owner is never refused
+  /// for staleness.
+  Status drive(const std::string& owner, const BaseTwist& twist);
+  /// Whether the base moves, or was told to within the last quarter of a second.
+  bool driving() const;
 
   /// Compares measured with commanded joints and stops when they are apart for too long.  submit() does it, too;
   /// call it in every cycle of the motion thread so that it also holds when nothing is sent.

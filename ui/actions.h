@@ -17,13 +17,14 @@ namespace longarm::ui {
 enum class ActionId {
   kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kExportWorld, kQuit,
   kUndo, kRedo, kDelete, kRename, kDuplicate, kNote, kNumbers, kColour, kGroup, kUngroup, kHide, kLock, kSelectAll, kCancel,
-  kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld, kAddKeepOut, kAddWorkspace,
+  kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld, kAddKeepOut, kAddWorkspace, kClearestView,
+  kReregister,
   kTaskTarget, kTaskCalibrate,
-  kLiveBoth, kFitPictures, kFullSize, kUndistort, kMaximise,
+  kLiveBoth, kFitPictures, kFullSize, kUndistort, kOwnLinks, kMaximise,
   kSceneFit, kSceneReset, kSceneTop, kSceneSide, kSceneLeft, kSceneFront, kLookLeft, kLookRight,
   kMoreOpaque, kLessOpaque, kTheme, kResetLayout,
-  kTakePair, kGrabPipe, kHome, kStow, kReady, kLookAhead, kReplan, kOtherWay, kDiscardPlan, kCancelPlanning,
-  kPlayPause, kBackUp, kStepBack, kStepForward, kSlower, kFaster, kToStart, kToEnd,
+  kTakePair, kFrameThis, kGrabPipe, kHome, kStow, kReady, kLookAhead, kReplan, kOtherWay, kDiscardPlan, kCancelPlanning,
+  kPlayPause, kBackUp, kStage, kStageBack, kHoldToRun, kAutoPlay, kStepBack, kStepForward, kSlower, kFaster, kToStart, kToEnd,
   kGripperOpen, kGripperClose, kRestart, kStop, kReset,
   kShortcuts, kAbout
 };

@@ -33,7 +33,7 @@ CalibrateZoomPanel::CalibrateZoomPanel(Workbench& bench, Appearance& appearance,
   column->addWidget(m_curve, 1);
   column->addWidget(buildTable(), 1);
   row->addWidget(left, 1);
-  row->addWidget(buildSteps());
+  row->addWidget(buildSteps(appearance));
   bind();
   refresh();
 }
@@ -44,7 +44,7 @@ QWidget* CalibrateZoomPanel::buildTable() {
   return m_nodes;
 }
 
-QWidget* CalibrateZoomPanel::buildSteps() {
+QWidget* CalibrateZoomPanel::buildSteps(Appearance& appearance) {
   const auto [side, column] = framedColumn(this, 340);
   auto* form = new QFormLayout;
   m_camera = new QComboBox(side);
@@ -79,6 +79,8 @@ QWidget* CalibrateZoomPanel::buildSteps() {
   last->addWidget(m_clear);
   last->addWidget(m_save);
   column->addLayout(last);
+  m_use = holdButton(tr("Hold to use this table"), appearance, side);
+  column->addWidget(m_use);
   return side;
 }
 
@@ -105,6 +107,8 @@ void CalibrateZoomPanel::bind() {
     askWhereToSave(this, tr("Save the zoom camera"), m_camera->currentData().toString() + QStringLiteral(".xml"), {tr("Zoom cameras (*.xml)")},
                    [this](const QString& file) { model().save(file); });
   });
+  connect(m_use, &widgets::HoldButton::held, this, [this] { model().use(m_camera->currentData().toString().toStdString()); });
+  connect(&m_bench.robot(), &RobotSession::stopChanged, this, &CalibrateZoomPanel::refreshDrive);
   connect(&model(), &session::ZoomController::changed, this, &CalibrateZoomPanel::refresh);
   connect(&model(), &session::ZoomController::saved, this, [this](const QString& file) { m_bench.say(tr("Zoom camera saved to %1").arg(file)); });
   connect(&m_bench.calibration().intrinsics(), &session::IntrinsicsController::changed, this, &CalibrateZoomPanel::refreshDrive);
@@ -123,7 +127,7 @@ QString CalibrateZoomPanel::whyNotGo() const {
   const auto& workcell = m_bench.document().workcell();
   const auto* camera = workcell ? workcell->camera(m_camera->currentData().toString().toStdString()) : nullptr;
   if (camera == nullptr) return tr("no camera is chosen.");
-  if (camera->role != "ptz") return tr("camera %1 has no zoom.").arg(m_camera->currentText());
+  if (!camera->zooms) return tr("camera %1 has no zoom.").arg(m_camera->currentText());
   return m_bench.robot().whyNotReady();
 }
 
@@ -178,6 +182,10 @@ void CalibrateZoomPanel::refresh() {
 }
 
 void CalibrateZoomPanel::refreshDrive() {
+  QString why = model().whyNotSave();
+  if (why.isEmpty() && !m_bench.zoomDrive().zooms(m_camera->currentData().toString())) why = tr("camera %1 has no zoom.").arg(m_camera->currentText());
+  if (why.isEmpty()) why = m_bench.whyNotCalibrate();
+  setWhyNot(m_use, why, tr("The camera is measured with by this table from now on, at every zoom; snapshots keep their lens"));
   setWhyNot(m_go, whyNotGo(), tr("First a little below, then to the setting: always from the same side"));
   setWhyNot(m_add, model().whyNotAddLens(m_setting->value()), tr("The newest result of the board becomes the table's entry at this setting"));
 }

@@ -9,6 +9,7 @@
 #include "ui/appearance.h"
 #include "ui/workbench.h"
 #include "ui/zoom_curve.h"
+#include "widgets/hold_button.h"
 
 class QComboBox;
 class QDoubleSpinBox;
@@ -29,6 +30,7 @@ class CalibrateZoomPanel final : public QWidget {
   QComboBox* camera() const { return m_camera; }
   QDoubleSpinBox* setting() const { return m_setting; }
   QPushButton* addButton() const { return m_add; }
+  widgets::HoldButton* useButton() const { return m_use; }
   QPushButton* goButton() const { return m_go; }
   QString advice() const;
 
@@ -36,7 +38,7 @@ class CalibrateZoomPanel final : public QWidget {
   void showEvent(QShowEvent* event) override;
 
  private:
-  QWidget* buildSteps();
+  QWidget* buildSteps(Appearance& appearance);
   QWidget* buildTable();
   void bind();
   void refresh();
@@ -52,6 +54,7 @@ class CalibrateZoomPanel final : public QWidget {
   QPushButton *m_go, *m_advised, *m_add, *m_remove, *m_open, *m_folder, *m_clear, *m_save;
   QLabel *m_advice, *m_warnings;
   ZoomCurve* m_curve;
+  widgets::HoldButton* m_use;
 };
 
 }  // namespace longarm::ui

@@ -33,7 +33,9 @@ int FeatureTable::columnCount(const QModelIndex& parent) const { return parent.i
 QString FeatureTable::text(const session::FeatureRow& row, int column) const {
   switch (column) {
     case kName: return QString::fromStdString(row.name);
-    case kPosition: return row.measured ? QString::fromStdString(row.xyz_text) : tr("not measured yet");
+    case kPosition:
+      if (row.stale) return tr("stale");
+      return row.measured ? QString::fromStdString(row.xyz_text) : tr("not measured yet");
     case kPlusMinus: return QString::fromStdString(row.plus_minus_text);
     case kLength: return QString::fromStdString(row.length_text);
     case kMiss: return QString::fromStdString(row.miss_text);
@@ -46,8 +48,12 @@ QString FeatureTable::tip(const session::FeatureRow& row, int column) const {
   if (column == kLocked) return row.locked ? tr("Locked: click to let it be moved") : tr("Click to keep it from being moved");
   if (!row.measured) return QString::fromStdString(row.reason);
   QString text = tr("%1 (%2)").arg(QString::fromStdString(row.name), QString::fromLatin1(vision::toString(row.kind)));
+  if (!row.size_text.empty()) text += QLatin1Char('\n') + QString::fromStdString(row.size_text);
   if (!row.note.empty()) text += QLatin1Char('\n') + QString::fromStdString(row.note);
   if (row.group != 0) text += QLatin1Char('\n') + tr("In group %1").arg(row.group);
+  if (row.stale)
+    text += QLatin1Char('\n') + tr("Stale: the base was driven since its pictures were taken. Re-register "
+                                   "it, or mark it in new pictures.");
   for (const auto& warning : row.warnings) text += QLatin1Char('\n') + QString::fromStdString(warning);
   return text;
 }
@@ -79,6 +85,7 @@ QVariant FeatureTable::data(const QModelIndex& index, int role) const {
       return int(index.column() == kName ? Qt::AlignLeft | Qt::AlignVCenter
                  : index.column() == kShown || index.column() == kLocked ? Qt::AlignCenter : Qt::AlignRight | Qt::AlignVCenter);
     case Qt::ForegroundRole:
+      if (shown.stale) return m_appearance.theme().amber;
       return shown.hidden || !shown.measured ? QVariant(m_appearance.theme().muted) : QVariant();
     default: return {};
   }

@@ -1,5 +1,6 @@
 #include "ui/head_panel.h"
 
+#include <QCheckBox>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QToolButton>
@@ -57,6 +58,12 @@ HeadPanel::HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance,
   m_gripper = new QLabel(this);
   m_gripper->setWordWrap(true);
   right->addWidget(m_gripper);
+  m_watch = new QCheckBox(tr("Watch the tool"), this);
+  m_watch->setChecked(bench.watch().on());
+  m_watch->setFocusPolicy(Qt::TabFocus);
+  m_watch->setToolTip(tr("While the arm moves the heads turn and zoom to keep the tool and its target in the picture. "
+                         "A head that you aim is left alone for 5 s."));
+  right->addWidget(m_watch);
   right->addStretch(1);
   row->addLayout(right, 1);
   const auto style = [this, &appearance] { m_stick->setTheme(appearance.theme()); };
@@ -64,6 +71,8 @@ HeadPanel::HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance,
   connect(&appearance, &Appearance::changed, this, style);
   connect(m_stick, &widgets::AimStick::deflected, &m_bench.aim(), &session::AimController::setStick);
   connect(m_actions.at(ActionId::kTakePair), &QAction::triggered, &m_bench, &Workbench::takePair);
+  connect(m_watch, &QCheckBox::toggled, &m_bench.watch(), &session::WatchController::setOn);
+  connect(m_actions.at(ActionId::kFrameThis), &QAction::triggered, &m_bench, &Workbench::frameSelection);
   bindGripper();
   connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &HeadPanel::refresh);
   connect(&m_bench.robot(), &RobotSession::linkChanged, this, &HeadPanel::refresh);
@@ -101,6 +110,8 @@ void HeadPanel::refresh() {
 
   const auto& workcell = m_bench.document().workcell();
   m_head->setVisible(workcell && workcell->pan_tilts.size() > 1);
+  m_watch->setEnabled(workcell && !workcell->pan_tilts.empty());
+  m_actions.setWhyNot(ActionId::kFrameThis, m_bench.robot().whyNotReady());
   m_head->setText(m_bench.aim().panTilt());
   QString why = m_bench.robot().whyNotReady();
   if (why.isEmpty() && (!workcell || !workcell->gripper)) why = tr("The workcell has no gripper.");

@@ -10,6 +10,7 @@
 #include "widgets/aim_stick.h"
 #include "widgets/value_label.h"
 
+class QCheckBox;
 class QLabel;
 
 namespace longarm::ui {
@@ -21,6 +22,7 @@ class HeadPanel final : public QWidget {
  public:
   HeadPanel(Workbench& bench, Actions& actions, Appearance& appearance, QWidget* parent = nullptr);
   widgets::AimStick* stick() const { return m_stick; }
+  QCheckBox* watch() const { return m_watch; }
 
  private:
   void bindGripper();
@@ -31,6 +33,7 @@ class HeadPanel final : public QWidget {
   widgets::AimStick* m_stick;
   widgets::ValueLabel *m_pan, *m_tilt;
   QLabel *m_head, *m_gripper;
+  QCheckBox* m_watch;
 };
 
 }  // namespace longarm::ui

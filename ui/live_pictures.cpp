@@ -58,6 +58,11 @@ std::optional<vision::View> LivePictures::view(const QString& camera) const {
   return found == m_entries.end() ? std::nullopt : found->second.view;
 }
 
+QString LivePictures::whyNoView(const QString& camera) const {
+  const auto found = m_entries.find(camera);
+  return found == m_entries.end() ? QString() : found->second.why_no_view;
+}
+
 double LivePictures::stamp_s(const QString& camera) const {
   const auto found = m_entries.find(camera);
   return found == m_entries.end() ? 0 : found->second.decoded_s;
@@ -107,11 +112,17 @@ void LivePictures::take(const QString& camera, const hardware::Frame& frame, con
     auto state = runtime->jointStateAt(frame.stamp_s);
     const auto newest = runtime->jointState();
     if (!state && newest) state = *newest;
+    const auto zoom = runtime->zoomAt(frame.camera, frame.stamp_s);
+    auto view = !state ? Result<vision::View>(state.error())
+                : !zoom ? Result<vision::View>(zoom.error())
+                        : session::cameraView(m_workcell ? *m_workcell : runtime->workcell(), frame.camera, *state, *zoom);
     entry.view.reset();
-    if (state) {
-      auto view = session::cameraView(m_workcell ? *m_workcell : runtime->workcell(), frame.camera, *state);
-      if (view) entry.view = std::move(*view);
+    entry.why_no_view = view ? QString() : QString::fromStdString(view.error().message);
+    if (view && view->camera.width <= 0) {
+      view->camera.width = decoded.picture.cols;
+      view->camera.height = decoded.picture.rows;
     }
+    if (view) entry.view = std::move(*view);
   }
   entry.new_picture = true;
   if (decoded.thumbnail.isNull()) return;

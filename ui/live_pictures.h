@@ -40,6 +40,7 @@ class LivePictures final : public QObject {
   QImage thumbnail(const QString& camera) const;                ///< Null before the first.
   /// Where the camera was at that picture; empty while unknown.
   std::optional<vision::View> view(const QString& camera) const;
+  QString whyNoView(const QString& camera) const;               ///< A sentence while view() is empty.
   /// When that picture was exposed, on the robot's clock [s].
   double stamp_s(const QString& camera) const;
   /// Age of the newest frame that arrived [s]; empty: none ever.
@@ -55,6 +56,7 @@ class LivePictures final : public QObject {
     cv::Mat picture;
     QImage thumbnail;
     std::optional<vision::View> view;
+    QString why_no_view;
     bool new_picture = false, new_thumbnail = false;
     std::uint64_t sequence = 0;
     double decoded_s = -1e9, thumbnail_s = -1e9;

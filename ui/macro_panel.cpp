@@ -105,6 +105,8 @@ void MacroPanel::bindActions() {
   connect(&m_bench.play(), &session::PlayController::changed, this, &MacroPanel::refreshPlan);
   connect(&m_bench.targeting(), &session::TargetingController::planChanged, this, &MacroPanel::refreshPlan);
   connect(&m_appearance, &Appearance::changed, this, &MacroPanel::applyTheme);
+  connect(&m_bench, &Workbench::autoPlayChanged, this, &MacroPanel::refresh);
+  connect(&m_bench.hand(), &session::PlayHand::changed, this, &MacroPanel::refresh);
   for (const auto& [macro, id] : actionsOfMacros()) {
     connect(m_actions.at(id), &QAction::triggered, this, [this, name = macro] { m_bench.plan(name); });
   }
@@ -203,6 +205,12 @@ void MacroPanel::replanIfShown(const QString& macro) {
   if (record && record->macro == macro.toStdString() && !play.loaded && !play.playing && m_bench.whyNotPlan().isEmpty()) m_replan.start();
 }
 
+QString MacroPanel::whatHappens() const {
+  return m_bench.autoPlay() && !m_bench.hand().holdToRun()
+             ? tr("Auto-play is on: the arm moves as soon as a motion is found.")
+             : tr("Plans and shows; nothing moves before Play.");
+}
+
 void MacroPanel::showButton(const session::MacroRow& row) {
   const QString busy = m_bench.whyNotPlan();
   const QString why = busy.isEmpty() ? row.reason : busy;
@@ -214,7 +222,7 @@ void MacroPanel::showButton(const session::MacroRow& row) {
   if (!row.accuracy.isEmpty()) tip << row.accuracy;
   if (!reach.reason.empty()) tip << QString::fromStdString(reach.reason);
   if (reach.level != Level::kUnknown && reach.level != Level::kNot) tip << tr("At a glance it can be reached, the tool rolled by %1\u00b0.").arg(QString::number(reach.roll * 180 / M_PI, 'f', 0));
-  tip << (why.isEmpty() ? tr("Plans and shows; nothing moves before Play.") : tr("Not now: %1").arg(why));
+  tip << (why.isEmpty() ? whatHappens() : tr("Not now: %1").arg(why));
   shown->setToolTip(tip.join(QLatin1Char('\n')).toHtmlEscaped().replace(QLatin1Char('\n'), QLatin1String("<br>")));
   const auto action = actionsOfMacros().find(row.name);
   if (action != actionsOfMacros().end()) m_actions.setWhyNot(action->second, why);
@@ -267,7 +275,7 @@ void MacroPanel::refreshPlan() {
   const QString one = m_bench.plans().whyNotOtherWay();
   m_actions.setWhyNot(ActionId::kOtherWay, one.isEmpty() ? m_bench.whyNotPlan() : one);
   if (!record || planning) {
-    m_outcome->setText(planning ? tr("Planning %1 ...").arg(m_bench.plans().planning()) : tr("A motion is shown first, and moves only by Play."));
+    m_outcome->setText(planning ? tr("Planning %1 ...").arg(m_bench.plans().planning()) : whatHappens());
     return;
   }
   m_outcome->setText(told(record->plan).join(QLatin1Char('\n')));

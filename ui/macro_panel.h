@@ -48,6 +48,7 @@ class MacroPanel final : public QWidget {
   void showReachOf(const session::MacroRow& row);
   void choose(const QString& macro);
   void replanIfShown(const QString& macro);
+  QString whatHappens() const;
   QStringList told(const planning::Plan& plan) const;
   bool offered(const session::MacroRow& row) const;
   void applyTheme();

@@ -11,11 +11,13 @@
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
+#include <QTabBar>
 #include <QTimer>
 #include <QVBoxLayout>
 
 #include "ui/compare_dialog.h"
 #include "ui/macro_memory.h"
+#include "ui/play_settings.h"
 #include "ui/shortcut_sheet.h"
 #include "ui/sketch_watch.h"
 
@@ -28,6 +30,7 @@ MainWindow::MainWindow(Workbench& bench, Appearance& appearance, QSettings& sett
       m_stop_keys(new StopKeys([&bench] { return bench.robot().armed() || bench.robot().status().moving; }, this)),
       m_files(new FileActions(bench, *m_actions, settings, this)), m_edits(new SketchEdits(bench, *m_actions, this)) {
   new MacroMemory(bench.plans(), settings, this);
+  new PlaySettings(bench, *m_actions, settings, this);
   setObjectName(QStringLiteral("longarm"));
   new SketchActions(bench.targeting(), *m_actions, this);
   makePanels();
@@ -67,11 +70,14 @@ void MainWindow::makePanels() {
   m_nudge = new NudgePanel(m_bench);
   m_head = new HeadPanel(m_bench, *m_actions, m_appearance);
   m_jog = new JogPanel(m_bench);
+  m_drive = new DrivePanel(m_bench);
+  m_recorded = new RecordedPanel(m_bench);
   m_motion = new MotionPanel(m_bench, *m_actions, m_appearance);
   m_stop = new StopPanel(m_bench, *m_actions, m_appearance);
   m_cameras = new CamerasPanel(m_bench, m_appearance);
   m_snapshots = new SnapshotsPanel(m_bench, m_appearance);
   m_world = new WorldPanel(m_bench, *m_actions);
+  m_templates = new TemplatePanel(m_bench);
   m_strip = new StatusStrip(m_bench, *m_actions, m_appearance);
   m_notices = new NoticeBar;
   m_tasks = new TaskTabs(*m_actions);
@@ -98,15 +104,24 @@ void MainWindow::assemble() {
   addDock(QStringLiteral("cameras"), tr("Cameras"), m_cameras, Qt::LeftDockWidgetArea);
   addDock(QStringLiteral("features"), tr("Features"), m_features, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("jog"), tr("Jog arm"), scrolled(m_jog), Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("drive"), tr("Drive"), scrolled(m_drive), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("head"), tr("Cameras' aim and gripper"), m_head, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("macros"), tr("Motions"), scrolled(m_macros), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("snapshots"), tr("Snapshots"), m_snapshots, Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("world"), tr("World"), m_world, Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("templates"), tr("Templates"), scrolled(m_templates), Qt::BottomDockWidgetArea);
+  addDock(QStringLiteral("recorded"), tr("Recorded"), scrolled(m_recorded), Qt::BottomDockWidgetArea);
   addDock(QStringLiteral("correction"), tr("Correction"), scrolled(m_nudge), Qt::BottomDockWidgetArea);
   const auto dock = [this](const char* name) { return m_docks->findChild<QDockWidget*>(QLatin1String(name)); };
   // Behind the list of features, so that they take no room of their own.
-  for (const char* name : {"jog", "correction", "snapshots", "world"}) m_docks->tabifyDockWidget(dock("features"), dock(name));
+  for (const char* name : {"jog", "drive", "correction", "recorded", "snapshots", "world", "templates"})
+    m_docks->tabifyDockWidget(dock("features"), dock(name));
   dock("features")->raise();
+  // Whole words that scroll, rather than eight stumps that push the motions out of a small window.
+  for (auto* tabs : m_docks->findChildren<QTabBar*>()) {
+    tabs->setElideMode(Qt::ElideNone);
+    tabs->setUsesScrollButtons(true);
+  }
   auto* column = m_frame->content();
   m_pages = new QStackedWidget;
   m_pages->addWidget(m_docks);
@@ -204,6 +219,8 @@ void MainWindow::makeMenus() {
 void MainWindow::connectPanels() {
   connect(m_stop_keys, &StopKeys::stopPressed, this, [this] { m_bench.robot().stop("operator", "the stop key was pressed"); });
   connect(m_tasks, &TaskTabs::taskChanged, this, &MainWindow::showTask);
+  connect(m_drive, &DrivePanel::cameraWanted, this,
+          [this](const QString& camera) { m_pictures->pane(PaneSide::kLeft)->showLive(camera); });
   connect(m_strip, &StatusStrip::healthWanted, this, [this](const QString& camera) {
     m_tasks->setTask(Task::kCalibrate);
     m_calibrate->showTool(m_calibrate->library());
@@ -267,6 +284,7 @@ void MainWindow::showPlanNotice() {
   const QString key = QStringLiteral("plan");
   const auto& state = m_bench.play().state();
   showAccuracyNotice();
+  showHaltNotice();
   if (!state.stale || !state.has_plan) return m_notices->clear(key);
   if (m_notices->has(key)) return;
   m_notices->post(key, state.why_not_play, {{tr("Plan again"), [this] { m_bench.replan(); }},
@@ -280,6 +298,26 @@ void MainWindow::showAccuracyNotice() {
   if (m_notices->has(key)) return;
   m_notices->post(key, state.why_not_play, {{tr("Go on with care"), [this] { m_bench.play().acceptAccuracy(); }},
                                             {tr("Discard plan"), [this] { m_bench.plans().discard(); }}});
+}
+
+// The arm holds; these are the ways on.
+void MainWindow::showHaltNotice() {
+  const QString key = QStringLiteral("halt");
+  const auto& state = m_bench.play().state();
+  const bool latched = m_bench.robot().status().gate.stopped;
+  if (!state.halted || state.stale || (latched && state.halt_reason.isEmpty())) return m_notices->clear(key);
+  if (m_notices->has(key)) return;
+  auto& hand = m_bench.hand();
+  using Order = session::PlayHand::Order;
+  const QString text = state.halt_reason.isEmpty()
+                           ? tr("The motion was stopped; the arm holds on its path.")
+                           : tr("The arm holds: %1. Reset STOP if it is latched, then choose a way on.")
+                                 .arg(state.halt_reason);
+  m_notices->post(key, text,
+                  {{tr("Go on"), [&hand] { hand.click(Order::kPlay); }},
+                   {tr("Back up"), [&hand] { hand.click(Order::kBackUp); }},
+                   {tr("Plan again"), [this] { m_bench.replan(); }},
+                   {tr("Discard plan"), [this] { m_bench.plans().discard(); }}});
 }
 
 void MainWindow::showLinkNotice() {

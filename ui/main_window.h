@@ -11,6 +11,7 @@
 #include "ui/actions.h"
 #include "ui/calibrate_page.h"
 #include "ui/cameras_panel.h"
+#include "ui/drive_panel.h"
 #include "ui/feature_panel.h"
 #include "ui/file_actions.h"
 #include "ui/head_panel.h"
@@ -20,6 +21,7 @@
 #include "ui/notice_bar.h"
 #include "ui/nudge_panel.h"
 #include "ui/pictures_area.h"
+#include "ui/recorded_panel.h"
 #include "ui/scene_panel.h"
 #include "ui/sketch_actions.h"
 #include "ui/sketch_edits.h"
@@ -30,6 +32,7 @@
 #include "ui/task_tabs.h"
 #include "ui/window_layout.h"
 #include "ui/workbench.h"
+#include "ui/template_panel.h"
 #include "ui/world_panel.h"
 #include "widgets/mode_frame.h"
 
@@ -53,10 +56,13 @@ class MainWindow final : public QMainWindow {
   MacroPanel* macros() const { return m_macros; }
   HeadPanel* head() const { return m_head; }
   JogPanel* jog() const { return m_jog; }
+  DrivePanel* drive() const { return m_drive; }
+  RecordedPanel* recorded() const { return m_recorded; }
   MotionPanel* motion() const { return m_motion; }
   StopPanel* stopPanel() const { return m_stop; }
   SnapshotsPanel* snapshots() const { return m_snapshots; }
   WorldPanel* world() const { return m_world; }
+  TemplatePanel* templates() const { return m_templates; }
   SketchEdits* edits() const { return m_edits; }
   CamerasPanel* cameras() const { return m_cameras; }
   StatusStrip* strip() const { return m_strip; }
@@ -91,6 +97,7 @@ class MainWindow final : public QMainWindow {
   void showTitle();
   void showPlanNotice();
   void showAccuracyNotice();
+  void showHaltNotice();
   void showLinkNotice();
   void showAbout();
 
@@ -114,11 +121,14 @@ class MainWindow final : public QMainWindow {
   NudgePanel* m_nudge;
   MacroPanel* m_macros;
   JogPanel* m_jog;
+  DrivePanel* m_drive;
+  RecordedPanel* m_recorded;
   HeadPanel* m_head;
   MotionPanel* m_motion;
   StopPanel* m_stop;
   CamerasPanel* m_cameras;
   SnapshotsPanel* m_snapshots;
+  TemplatePanel* m_templates;
   WorldPanel* m_world;
   StatusStrip* m_strip;
   NoticeBar* m_notices;

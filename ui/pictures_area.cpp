@@ -78,10 +78,11 @@ void PicturesArea::toggleMaximised(bool on) {
 void PicturesArea::refreshLine() {
   const auto measure = m_bench.targeting().liveMeasure();
   // Before there are numbers the hint says what to do, and needs the room.
-  const QString numbers = measure && measure->xyz ? QString::fromStdString(measure->text()) : QString();
+  const QString numbers = measure && measure->xyz && !measure->refused ? QString::fromStdString(measure->text()) : QString();
   m_numbers->setVisible(!numbers.isEmpty());
   m_numbers->setFullText(numbers);
-  m_hint->setFullText(m_bench.targeting().hint());
+  const bool refused = measure && measure->refused;
+  m_hint->setFullText(refused ? QString::fromStdString(measure->text()) : m_bench.targeting().hint());
 }
 
 void PicturesArea::refreshLive() {

@@ -23,6 +23,7 @@ SceneContents::SceneContents(vtkRenderer* renderer) : m_renderer(renderer) {
   m_grid.addTo(renderer);
   m_axes.addTo(renderer);
   m_sketch.addTo(renderer);
+  m_dimension.addTo(renderer);
   m_sketched_world.addTo(renderer);
   for (auto& frustum : m_frustums) frustum.addTo(renderer);
   setOpacity(m_opacity);
@@ -80,6 +81,7 @@ void SceneContents::setSketch(const session::Document& document) {
     drawn.feature = *measured;
     drawn.selected = document.selection().contains(item.id);
     drawn.visible = !item.hidden;
+    drawn.stale = document.measurement(item.id).stale;
     items.push_back(std::move(drawn));
   }
   m_sketch.update(items);
@@ -104,6 +106,13 @@ void SceneContents::placeBodies() {
     if (m_held.empty() || object.name != m_held) fixed.push_back(object);
   }
   m_world->update(fixed, m_link_poses);
+}
+
+bool SceneContents::setDimension(const std::optional<session::SceneDimension>& dimension) {
+  if (dimension == m_measured) return false;
+  m_measured = dimension;
+  m_dimension.update(dimension ? dimension->points : std::vector<Eigen::Vector3d>(), dimension ? dimension->text : std::string());
+  return true;
 }
 
 void SceneContents::setPlan(const session::Document& document) {

@@ -14,6 +14,8 @@
 
 #include "session/controllers/held_controller.h"
 #include "session/document/document.h"
+#include "session/tools/sketch_tool.h"
+#include "widgets/scene/dimension_rep.h"
 #include "widgets/scene/frustum_rep.h"
 #include "widgets/scene/ground_grid_rep.h"
 #include "widgets/scene/plan_rep.h"
@@ -39,6 +41,8 @@ class SceneContents final {
   void setSketch(const session::Document& document);
   /// Bodies that were added to the world, and only those that are shown; what is held is drawn at the tool.
   void setWorld(const session::Document& document, const std::optional<session::HeldBody>& held);
+  /// What the measure tool measured; empty: nothing.  @returns whether it differs from what was shown.
+  bool setDimension(const std::optional<session::SceneDimension>& dimension);
   void setPlan(const session::Document& document);
   /// Shows the ghost there, unless the robot itself stands there.
   void setCursor(double t_s);
@@ -62,6 +66,8 @@ class SceneContents final {
   scene::GroundGridRep m_grid;
   scene::AxesRep m_axes;
   scene::SketchRep m_sketch;
+  scene::DimensionRep m_dimension;
+  std::optional<session::SceneDimension> m_measured;
   scene::WorldRep m_sketched_world;
   std::vector<planning::WorldObject> m_bodies;   // What that shows.
   std::string m_held;                      // Name of the body that is held; it is drawn once.

@@ -90,7 +90,13 @@ void ScenePanel::bind(Actions& actions) {
     m_contents->setOpacity(tenths / 10.0);
     m_view->requestRender();
   });
-  connect(m_view, &widgets::SceneView::picked, this, [this](quint64 id) { m_bench.targeting().select(FeatureId{id}); });
+  connect(m_view, &widgets::SceneView::picked, this, [this](quint64 id) {
+    if (m_bench.targeting().tool() != session::ToolKind::kMeasure) m_bench.targeting().select(FeatureId{id});
+  });
+  connect(m_view, &widgets::SceneView::clicked, this, &ScenePanel::measureAt);
+  connect(&m_bench.targeting(), &session::TargetingController::overlayChanged, this, [this] {
+    if (m_contents->setDimension(m_bench.targeting().dimension())) m_view->requestRender();
+  });
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &ScenePanel::onSketch);
   connect(&m_bench.targeting(), &session::TargetingController::worldChanged, this, &ScenePanel::onWorld);
   connect(&m_bench.held(), &session::HeldController::changed, this, &ScenePanel::onWorld);
@@ -133,6 +139,13 @@ void ScenePanel::onSketch() {
   m_contents->setSketch(m_bench.document());
   m_view->setPickables(m_contents->pickables(m_bench.document()));
   m_view->requestRender();
+}
+
+// The measure tool works in the scene as it does in the pictures.
+void ScenePanel::measureAt(const QPointF& position) {
+  if (m_bench.targeting().tool() != session::ToolKind::kMeasure) return;
+  const auto point = m_view->pickPoint(position);
+  if (point) m_bench.targeting().takeVertex({FeatureId{point->first}, point->second});
 }
 
 void ScenePanel::onPlan() {

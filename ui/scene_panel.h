@@ -38,6 +38,7 @@ class ScenePanel final : public QFrame {
   void onWorld();
   void onSketch();
   void onPlan();
+  void measureAt(const QPointF& position);
   void showPanes();
   void showAll(scene::CameraPreset preset);
   void frameSelection();

@@ -25,6 +25,8 @@ constexpr Gesture kGestures[] = {
     {"Snapshots", "Shift while dragging", "Snap to the corner or edge next to the handle, to a fraction of a pixel"},
     {"Snapshots", "Tab", "Take the match that is offered in the other picture; else next handle"},
     {"Live pictures", "Double-click, Ctrl+click", "Bring that place to the middle of the picture"},
+    {"Live pictures", "Drag a frame", "Turn and zoom the camera so that what is in the frame fills the picture"},
+    {"Live pictures", "Page up, Page down", "Zoom in or out while held, with Shift focus farther or nearer"},
     {"Live pictures", "Arrow keys", "Turn the cameras 1 degree, with Shift 5 degrees"},
     {"3-D scene", "Left drag", "Turn the scene"},
     {"3-D scene", "Middle or Shift drag", "Move the scene"},

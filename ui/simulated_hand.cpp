@@ -46,6 +46,10 @@ void SimulatedHand::press(QWidget* widget, const QPointF& at, Qt::MouseButton bu
   send(widget, QEvent::MouseButtonPress, at, button, button, modifiers);
 }
 
+void SimulatedHand::dragTo(QWidget* widget, const QPointF& at, Qt::KeyboardModifiers modifiers) {
+  send(widget, QEvent::MouseMove, at, Qt::NoButton, Qt::LeftButton, modifiers);
+}
+
 void SimulatedHand::release(QWidget* widget, const QPointF& at, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) {
   send(widget, QEvent::MouseButtonRelease, at, button, Qt::NoButton, modifiers);
   if (m_pause_ms > 0) pump(m_pause_ms);
@@ -68,7 +72,7 @@ void SimulatedHand::drag(QWidget* widget, const QPointF& from, const QPointF& to
   move(widget, from, modifiers);
   press(widget, from, Qt::LeftButton, modifiers);
   for (int i = 1; i <= steps; ++i) {
-    send(widget, QEvent::MouseMove, from + (to - from) * i / steps, Qt::NoButton, Qt::LeftButton, modifiers);
+    dragTo(widget, from + (to - from) * i / steps, modifiers);
     if (m_pause_ms > 0) pump(std::max(1, m_pause_ms / steps));
   }
   release(widget, to, Qt::LeftButton, modifiers);

@@ -21,6 +21,8 @@ class SimulatedHand final {
 
   void move(QWidget* widget, const QPointF& at, Qt::KeyboardModifiers modifiers = {});
   void press(QWidget* widget, const QPointF& at, Qt::MouseButton button = Qt::LeftButton, Qt::KeyboardModifiers modifiers = {});
+  /// Moves with the left button held.
+  void dragTo(QWidget* widget, const QPointF& at, Qt::KeyboardModifiers modifiers = {});
   void release(QWidget* widget, const QPointF& at, Qt::MouseButton button = Qt::LeftButton, Qt::KeyboardModifiers modifiers = {});
   void click(QWidget* widget, const QPointF& at, Qt::MouseButton button = Qt::LeftButton, Qt::KeyboardModifiers modifiers = {});
   void click(QAbstractButton* button);

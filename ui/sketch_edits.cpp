@@ -22,6 +22,7 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
   connect(actions.at(ActionId::kNumbers), &QAction::triggered, this, &SketchEdits::showNumbers);
   connect(actions.at(ActionId::kColour), &QAction::triggered, this, &SketchEdits::askColour);
   connect(actions.at(ActionId::kExportWorld), &QAction::triggered, this, &SketchEdits::browseExport);
+  connect(actions.at(ActionId::kReregister), &QAction::triggered, &bench, &Workbench::reregister);
   const auto tell = [this](const Status& done) {
     if (!done) m_bench.say(QString::fromStdString(done.error().message));
   };
@@ -29,6 +30,9 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
   connect(actions.at(ActionId::kAddKeepOut), &QAction::triggered, this,
           [this, tell] { tell(m_bench.world().addSelected(session::WorldRole::kKeepOut)); });
   connect(actions.at(ActionId::kAddWorkspace), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addWorkspace()); });
+  connect(actions.at(ActionId::kClearestView), &QAction::triggered, this, [this] { m_bench.showClearestView(); });
+  connect(actions.at(ActionId::kOwnLinks), &QAction::toggled, this, [this](bool on) { m_bench.targeting().setOwnLinksShown(on); });
+  actions.at(ActionId::kOwnLinks)->setChecked(true);
   connect(&bench.targeting(), &TargetingController::featuresChanged, this, &SketchEdits::refresh);
   connect(&bench.targeting(), &TargetingController::worldChanged, this, &SketchEdits::refresh);
   refresh();
@@ -36,6 +40,7 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
 
 void SketchEdits::refresh() {
   for (const auto id : {ActionId::kAddToWorld, ActionId::kAddKeepOut}) m_actions.setWhyNot(id, m_bench.world().whyNotAdd());
+  m_actions.setWhyNot(ActionId::kReregister, m_bench.whyNotReregister());
   m_actions.setWhyNot(ActionId::kExportWorld, m_bench.world().items().empty() ? tr("Nothing was added to the world yet.") : QString());
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// SketchWatch: tells the operator, beside everything else, when picks speak against the calibration, or a pair of pictures can measure little.
+/// SketchWatch: tells the operator, beside everything else, when picks speak against the calibration or lie on the
+/// robot itself, or a pair of pictures can measure little.
 
 #include <QObject>
 
@@ -21,10 +22,12 @@ class SketchWatch final : public QObject {
  private:
   void refresh();
   void refreshBaseline();
+  void refreshOnRobot();
+  void refreshStale();
 
   Workbench& m_bench;
   NoticeBar& m_notices;
-  QString m_baseline_said;
+  QString m_baseline_said, m_on_robot_said, m_stale_said;
   QString m_said;                          // Shown, or answered.
 };
 

@@ -10,6 +10,7 @@
 #include "planning/world/workcell.h"
 #include "ui/elided_label.h"
 #include "ui/picture_text.h"
+#include "ui/zoom_bar.h"
 #include "widgets/icon.h"
 
 namespace longarm::ui {
@@ -18,6 +19,7 @@ using vision::PaneSide;
 
 namespace {
 
+constexpr double kLeastFrame_px = 8;     // on screen
 constexpr double kKeyTurn_rad = 0.0175, kKeyTurnFar_rad = 0.0873;   // 1 and 5 degrees
 
 bool fromRobot(const vision::Snapshot& snapshot) { return snapshot.source == "live"; }
@@ -101,6 +103,8 @@ void SnapshotPane::buildHeader() {
   m_undistort->setCheckable(true);
   for (auto* each : {m_fit, m_full_size, m_undistort}) row->addWidget(each);
   column->addWidget(m_canvas, 1);
+  m_zoom_bar = new ZoomBar(m_side, m_bench, m_canvas, this);
+  column->addWidget(m_zoom_bar);
   m_info = new ElidedLabel(this, Qt::ElideMiddle);
   m_info->setObjectName(QStringLiteral("muted"));
   column->addWidget(m_info);
@@ -168,6 +172,8 @@ QString SnapshotPane::emptyText() const {
 void SnapshotPane::refreshPicture() {
   (m_live ? m_live_button : m_snapshot_button)->setChecked(true);
   m_bench.live().setShown(m_side, m_live ? m_bench.paneCamera(m_side) : QString());
+  m_zoom_bar->setLive(m_live);
+  m_frame.reset();
   refreshChooser();
   m_canvas->setAge({});
   if (m_live) {
@@ -199,7 +205,8 @@ void SnapshotPane::refreshLive() {
     const auto view = m_bench.live().view(camera);
     m_canvas->setCamera(view ? std::optional<vision::CameraModel>(view->camera) : std::nullopt);
     m_canvas->setPicture(picture);
-    m_info->setFullText(tr("live: double-click looks there, arrow keys turn the head"));
+    const QString why = m_bench.live().whyNoView(camera);
+    m_info->setFullText(why.isEmpty() ? tr("live: double-click looks there, drag frames, arrow keys turn the head") : why);
   }
   refreshOverlay();
   Q_EMIT shownChanged();
@@ -211,7 +218,13 @@ void SnapshotPane::refreshOverlay() {
     return;
   }
   const auto shown = view();
-  m_canvas->setOverlay(shown && m_canvas->hasPicture() ? m_bench.targeting().overlay(*shown) : vision::Overlay{});
+  vision::Overlay overlay = shown && m_canvas->hasPicture() ? m_bench.targeting().overlay(*shown) : vision::Overlay{};
+  if (m_frame) {
+    const auto& [a, b] = *m_frame;
+    overlay.shapes.push_back({vision::OverlayShape::Kind::kPolyline, vision::OverlayRole::kSelected,
+                              {a, {b.x(), a.y()}, b, {a.x(), b.y()}, a}, {}});
+  }
+  m_canvas->setOverlay(overlay);
 }
 
 void SnapshotPane::refreshAge() {
@@ -256,13 +269,40 @@ void SnapshotPane::onPointer(const vision::PointerEvent& event) {
     m_bench.targeting().pointer(event);
     return;
   }
-  const bool centre = event.phase == vision::PointerPhase::kDoubleClick ||
-                      (event.phase == vision::PointerPhase::kPress && event.modifiers.control);
-  if (centre && event.left) m_bench.aim().aimAt(m_bench.paneCamera(m_side), event.pixel);
+  onLivePointer(event);
+}
+
+void SnapshotPane::onLivePointer(const vision::PointerEvent& event) {
+  using vision::PointerPhase;
+  const bool press = event.phase == PointerPhase::kPress;
+  const bool centre = event.phase == PointerPhase::kDoubleClick || (press && event.modifiers.control);
+  if (centre && event.left) {
+    m_frame.reset();
+    m_bench.aim().aimAt(m_bench.paneCamera(m_side), event.pixel);
+  } else if (press && event.left) {
+    m_frame = {event.pixel, event.pixel};
+  } else if (m_frame && event.phase == PointerPhase::kDrag) {
+    (*m_frame)[1] = event.pixel;
+    refreshOverlay();
+  } else if (m_frame && event.phase == PointerPhase::kRelease) {
+    endFrame(event);
+  }
+}
+
+// What is hardly a frame was a click.
+void SnapshotPane::endFrame(const vision::PointerEvent& event) {
+  const auto frame = *std::exchange(m_frame, std::nullopt);
+  refreshOverlay();
+  const Eigen::Vector2d size = (event.pixel - frame[0]).cwiseAbs();
+  if (size.minCoeff() < event.imageTolerance(kLeastFrame_px)) return;
+  m_bench.aim().frameRegion(m_bench.paneCamera(m_side), frame[0], event.pixel);
 }
 
 void SnapshotPane::onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) {
-  if (m_live) {
+  if (m_live && key == vision::SketchKey::kEscape) {
+    m_frame.reset();
+    refreshOverlay();
+  } else if (m_live) {
     turnHead(key, modifiers.shift);
   } else {
     m_bench.targeting().key(key, modifiers);

@@ -3,6 +3,7 @@
 /// @file
 /// SnapshotPane: one of the two pictures: a snapshot that is sketched on, or a camera live.
 
+#include <array>
 #include <optional>
 
 #include <QFrame>
@@ -18,6 +19,7 @@ class QToolButton;
 namespace longarm::ui {
 
 class ElidedLabel;
+class ZoomBar;
 
 /// In a snapshot the pointer and keys belong to the sketch tool.  In a live picture double-click or Ctrl+click brings
 /// that place to the middle, and the arrow keys turn the head.  GUI thread only.
@@ -30,6 +32,7 @@ class SnapshotPane final : public QFrame {
   widgets::ImageCanvas* canvas() const { return m_canvas; }
   vision::PaneSide side() const { return m_side; }
   QToolButton* liveButton() const { return m_live_button; }
+  ZoomBar* zoomBar() const { return m_zoom_bar; }
   QToolButton* snapshotButton() const { return m_snapshot_button; }
   bool live() const { return m_live; }
   void showLive(const QString& camera);
@@ -58,6 +61,8 @@ class SnapshotPane final : public QFrame {
   void refreshAge();
   void onPointer(const vision::PointerEvent& event);
   void onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers);
+  void onLivePointer(const vision::PointerEvent& event);
+  void endFrame(const vision::PointerEvent& event);
   void turnHead(vision::SketchKey key, bool far);
   QString emptyText() const;
   QToolButton* button(const char* icon, const QString& tip);
@@ -71,6 +76,8 @@ class SnapshotPane final : public QFrame {
   QToolButton *m_live_button, *m_snapshot_button, *m_fit, *m_full_size, *m_undistort;
   QComboBox* m_chooser;
   ElidedLabel* m_info;
+  ZoomBar* m_zoom_bar;
+  std::optional<std::array<Eigen::Vector2d, 2>> m_frame;   // being drawn in a live picture
 };
 
 }  // namespace longarm::ui

@@ -138,6 +138,8 @@ void StatusStrip::showArm() {
     m_arm->setStatus(StatusLamp::Level::kFault, status.stop_confirmed ? tr("STOPPED") : tr("STOPPING"),
                      tr("Stopped by %1: %2").arg(QString::fromStdString(status.gate.source),
                                                 QString::fromStdString(status.gate.reason)));
+  } else if (status.driving) {
+    m_arm->setStatus(StatusLamp::Level::kBusy, tr("base driving"), tr("The base drives; the arm is held"));
   } else if (status.moving) {
     m_arm->setStatus(StatusLamp::Level::kBusy, tr("arm moving"), tr("Follows its path"));
   } else {

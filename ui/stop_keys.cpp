@@ -12,16 +12,13 @@
 
 namespace longarm::ui {
 
-namespace {
-
 bool takesText(const QWidget* widget) {
+  if (widget == nullptr) widget = QApplication::focusWidget();
   const auto* combo = qobject_cast<const QComboBox*>(widget);
   return qobject_cast<const QLineEdit*>(widget) != nullptr || qobject_cast<const QPlainTextEdit*>(widget) != nullptr ||
          qobject_cast<const QTextEdit*>(widget) != nullptr || qobject_cast<const QAbstractSpinBox*>(widget) != nullptr ||
          (combo != nullptr && combo->isEditable());
 }
-
-}  // namespace
 
 StopKeys::StopKeys(std::function<bool()> armed, QObject* parent) : QObject(parent), m_armed(std::move(armed)) {
   qApp->installEventFilter(this);
@@ -33,7 +30,7 @@ bool StopKeys::isStop(int key, const QObject* receiver) const {
   if (key == Qt::Key_Pause) return true;
   // Keys come to the window first, and then to the widget that has the focus.
   const auto* widget = qobject_cast<const QWidget*>(receiver);
-  return key == Qt::Key_Space && (m_armed() || !takesText(widget != nullptr ? widget : QApplication::focusWidget()));
+  return key == Qt::Key_Space && (m_armed() || !takesText(widget));
 }
 
 bool StopKeys::eventFilter(QObject* watched, QEvent* event) {

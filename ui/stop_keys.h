@@ -7,7 +7,12 @@
 
 #include <QObject>
 
+class QWidget;
+
 namespace longarm::ui {
+
+/// Whether keys typed into this widget (or the one that has the focus, for null) are text.
+bool takesText(const QWidget* widget);
 
 /// An event filter of the application, so that no widget, dialog or text field can take the key first.  Pause always
 /// stops.  Space stops too, but while nothing can move it still types a blank into a text field.  GUI thread only.

@@ -18,15 +18,22 @@
 #include "session/calibration/zoom_controller.h"
 #include "session/controllers/aim_controller.h"
 #include "session/controllers/autosave.h"
+#include "session/controllers/drive_controller.h"
 #include "session/controllers/held_controller.h"
 #include "session/controllers/jog_controller.h"
 #include "session/controllers/match_controller.h"
+#include "session/controllers/motion_recorder.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/play_controller.h"
+#include "session/controllers/play_hand.h"
 #include "session/controllers/reach_controller.h"
 #include "session/controllers/snapshot_controller.h"
 #include "session/controllers/targeting_controller.h"
+#include "session/controllers/template_controller.h"
+#include "session/controllers/watch_controller.h"
+#include "session/controllers/view_adviser.h"
 #include "session/controllers/world_controller.h"
+#include "session/controllers/zoom_drive.h"
 #include "ui/live_pictures.h"
 #include "ui/robot_session.h"
 
@@ -57,12 +64,19 @@ class Workbench final : public QObject {
   session::WorldController& world() { return m_world; }
   session::HeldController& held() { return m_held; }
   session::MatchController& matches() { return m_matches; }
+  session::ViewAdviser& adviser() { return m_adviser; }
   session::SnapshotController& snapshots() { return m_snapshots; }
   session::PlanController& plans() { return m_plans; }
   session::PlayController& play() { return m_play; }
+  session::PlayHand& hand() { return m_hand; }
   session::ReachController& reach() { return m_reach; }
   session::AimController& aim() { return m_aim; }
+  session::ZoomDrive& zoomDrive() { return m_zoom_drive; }
+  session::WatchController& watch() { return m_watch; }
+  session::TemplateController& templates() { return m_templates; }
   session::JogController& jog() { return m_jog; }
+  session::DriveController& drive() { return m_drive; }
+  session::MotionRecorder& recorder() { return m_recorder; }
   session::Autosave& autosave() { return m_autosave; }
   session::CalibrationController& calibration() { return m_calibration; }
   session::PoseController& pose() { return m_pose; }
@@ -85,19 +99,36 @@ class Workbench final : public QObject {
   QString whyNotTakePair() const;
   void takePair();
 
+  /// Finds the clearest view of what is marked, says so, and shows it: a picture of the library, or one that is taken now.
+  /// @param feature Invalid: the one that is worked on or selected.
+  void showClearestView(FeatureId feature = {});
+
+  /// Why the base cannot be driven now; empty: it can.
+  QString whyNotDrive() const;
   /// Why no motion can be planned now beyond what the controller knows; empty: it can.
   QString whyNotPlan() const;
   void plan(const QString& macro);
+  /// A motion asked for by plan() is played as soon as it is found, where nothing speaks against it and
+  /// nothing must be held.  Off at first, and off again whenever a live robot is connected.
+  void setAutoPlay(bool on);
+  /// Why what is stale cannot be moved by marks made again; empty: it can.
+  QString whyNotReregister() const;
+  void reregister();
+  bool autoPlay() const { return m_auto_play; }
   void replan();
   void planOtherWay();
   /// Corrects the motion under way; the camera is the one of the left pane.  @param way [m]  @param turn [rad]
   void nudge(planning::JogFrame frame, const Eigen::Vector3d& way, const Eigen::Vector3d& turn);
+  Status beginTemplate(WorldItemId item, const QString& action);
+  /// Turns and zooms the panes' cameras so that the selected features fill their pictures.
+  void frameSelection();
   /// A sentence for the operator.
   void say(const QString& sentence);
 
  Q_SIGNALS:
   void said(const QString& sentence);
   void paneCameraChanged(longarm::vision::PaneSide side);
+  void autoPlayChanged();
 
  private:
   void connectParts();
@@ -109,6 +140,10 @@ class Workbench final : public QObject {
   void useCalibrations();
   QString whyNotTrust(const QString& macro) const;
   void lookAtReach();
+  void connectCameras();
+  void watchMotion();
+  void connectTemplates();
+  void playAtOnce(bool planned);
 
   session::Document m_document;
   session::EditHistory m_history;
@@ -116,15 +151,23 @@ class Workbench final : public QObject {
   RobotSession m_robot;
   LivePictures m_live;
   session::TargetingController m_targeting;
+  session::ViewAdviser m_adviser;
   session::MatchController m_matches;
   session::WorldController m_world;
   session::HeldController m_held;
   session::SnapshotController m_snapshots;
   session::PlanController m_plans;
   session::PlayController m_play;
+  session::PlayHand m_hand;
   session::ReachController m_reach;
   session::AimController m_aim;
+  session::ZoomDrive m_zoom_drive;
+  session::WatchController m_watch;
+  session::TemplateController m_templates;
   session::JogController m_jog;
+  session::DriveController m_drive;
+  session::MotionRecorder m_recorder;
+  QString m_motion_folder;
   session::Autosave m_autosave;
   session::CalibrationController m_calibration;
   session::PoseController m_pose;
@@ -134,6 +177,7 @@ class Workbench final : public QObject {
   session::ZoomController m_zoom;
   session::HealthController m_health;
   std::array<QString, 2> m_pane_cameras;
+  bool m_auto_play = false, m_play_when_planned = false;
 };
 
 }  // namespace longarm::ui

@@ -24,6 +24,9 @@ WorldPanel::WorldPanel(Workbench& bench, Actions& actions, QWidget* parent)
   column->setContentsMargins(3, 3, 3, 3);
   buildTable();
   column->addWidget(m_table, 1);
+  actions.at(ActionId::kAddKeepOut)->setIconText(tr("Keep-out"));      // five buttons in half a small window
+  actions.at(ActionId::kAddWorkspace)->setIconText(tr("Workspace"));
+  actions.at(ActionId::kExportWorld)->setIconText(tr("Export..."));
   auto* row = new QHBoxLayout;
   for (const auto id : {ActionId::kAddToWorld, ActionId::kAddKeepOut, ActionId::kAddWorkspace, ActionId::kExportWorld}) {
     auto* button = new QToolButton(this);
@@ -76,10 +79,13 @@ void WorldPanel::refresh() {
 void WorldPanel::fillRow(int row, const WorldItem& item) {
   const auto number = [](double metres) { return QString::fromStdString(formatFixed(metres * 1000, 1)); };
   const bool round = item.kind == WorldKind::kPipe || item.kind == WorldKind::kPoints;   // one diameter
-  const bool cloud = item.kind == WorldKind::kPoints;
+  const bool cloud = item.kind == WorldKind::kPoints, dropped = item.kind == WorldKind::kTemplate;
   const auto place = [&](int axis) { return cloud ? QString() : number(item.X_WO.translation()(axis)); };
-  const QString texts[] = {QString::fromStdString(item.name), QString::fromLatin1(session::toString(item.kind)), number(item.size.x()),
-                           round ? QString() : number(item.size.y()), cloud ? QString() : number(item.size.z()),
+  const bool stale = m_bench.document().stale(item);
+  const QString kind = dropped ? QString::fromStdString(item.template_name) : QString::fromLatin1(session::toString(item.kind));
+  const QString texts[] = {QString::fromStdString(item.name), kind + (stale ? tr(", stale") : QString()),
+                           dropped ? QString() : number(item.size.x()), round || dropped ? QString() : number(item.size.y()),
+                           cloud || dropped ? QString() : number(item.size.z()),
                            number(item.margin_m), place(0), place(1), place(2), {}, {}};
   for (int column = 0; column < kColumns; ++column) {
     auto* cell = new QTableWidgetItem(texts[column]);

@@ -96,11 +96,15 @@ void paintPolyline(QPainter& painter, const OverlayShape& shape, const RoleStyle
 
 void paintArea(QPainter& painter, const OverlayShape& shape, const RoleStyle& style, const PixelToWidget& to_widget,
                const OverlayLook& look) {
-  constexpr int kSeenThrough = 60;             // of 255
+  constexpr int kSeenThrough = 60, kHatch = 110;   // of 255
   QColor fill = style.color;
   fill.setAlpha(kSeenThrough);
   painter.setPen(Qt::NoPen);
   painter.setBrush(fill);
+  if (shape.role == OverlayRole::kOwnLink) {     // hatched, so that a grey arm before a grey wall is told, too
+    fill.setAlpha(kHatch);
+    painter.setBrush(QBrush(fill, Qt::BDiagPattern));
+  }
   for (const auto& run : mapRuns(shape, to_widget, look.max_step_px)) painter.drawPolygon(run);
 }
 

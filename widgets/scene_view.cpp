@@ -177,6 +177,21 @@ std::optional<quint64> SceneView::pick(const QPointF& position, double radius) c
   return best;
 }
 
+std::optional<std::pair<quint64, int>> SceneView::pickPoint(const QPointF& position, double radius) const {
+  std::optional<std::pair<quint64, int>> best;
+  double best_distance = radius;
+  for (const auto& pickable : m_pickables) {
+    for (std::size_t i = 0; i < pickable.points.size(); ++i) {
+      const auto at = widgetOfPoint(pickable.points[i]);
+      const double distance = at ? std::hypot(at->x() - position.x(), at->y() - position.y()) : radius + 1;
+      if (distance > best_distance) continue;
+      best_distance = distance;
+      best = {pickable.id, static_cast<int>(i)};
+    }
+  }
+  return best;
+}
+
 SceneSight SceneView::sightAt(const QPointF& position) const {
   vtkCamera* camera = m_vtk->renderer->GetActiveCamera();
   const double aspect = height() > 0 ? static_cast<double>(width()) / height() : 1;

@@ -62,6 +62,8 @@ class SceneView final : public QWidget {
   std::optional<QPointF> widgetOfPoint(const Eigen::Vector3d& p_W) const;
   /// The pickable within `radius` screen pixels of a position that is nearest to it.
   std::optional<quint64> pick(const QPointF& position, double radius = 12) const;
+  /// The point of a pickable that is nearest, and its index in it.
+  std::optional<std::pair<quint64, int>> pickPoint(const QPointF& position, double radius = 12) const;
   SceneSight sightAt(const QPointF& position) const;
   QSize sizeHint() const override { return {420, 420}; }
 

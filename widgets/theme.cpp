@@ -99,8 +99,9 @@ RoleStyle Theme::role(vision::OverlayRole role) const {
     case OverlayRole::kRival: return {QColor(0x7d, 0xf2, 0xe0), 1.2, true, true};
     case OverlayRole::kSolid: return {QColor(0xf4, 0xf6, 0xf8), 1.0, true, false};
     case OverlayRole::kWorld: return {QColor(0xc3, 0x9b, 0xff), 1.4, false, true};
-    case OverlayRole::kKeepOut: return {QColor(0xff, 0x6b, 0x5e), 1.6, false, true};
+    case OverlayRole::kKeepOut: return {QColor(0xff, 0x8c, 0x7e), 1.6, false, true};
     case OverlayRole::kWorkspace: return {QColor(0x6f, 0xc8, 0xff), 1.6, true, true};
+    case OverlayRole::kOwnLink: return {QColor(0xc8, 0xd4, 0xe0), 1.0, false, false};
     case OverlayRole::kDimension: return {QColor(0xff, 0xe0, 0xa8), 1.6, true, true};
   }
   return {};

@@ -29,18 +29,27 @@ TransportBar::TransportBar(QWidget* parent) : QWidget(parent) {
   m_caption = new QLabel(this);
   m_caption->setTextFormat(Qt::PlainText);
   m_caption->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-  rows->addWidget(m_caption);
+  auto* head = new QHBoxLayout;
+  m_badge = new QLabel(this);
+  m_badge->setObjectName(QStringLiteral("badge"));
+  m_badge->setProperty("level", QStringLiteral("amber"));
+  head->addWidget(m_badge);
+  head->addWidget(m_caption, 1);
+  rows->addLayout(head);
   m_time = new TimeBar(this);
   rows->addWidget(m_time);
   auto* row = new QHBoxLayout;
   row->setSpacing(6);
   rows->addLayout(row);
   m_to_start = button(QStringLiteral("transport-to-start"), tr("To start"), tr("Show the start of the motion (Home). Moves nothing."));
-  m_back_up = button(QStringLiteral("transport-back-up"), tr("Back up"), tr("Move the robot back along its path (B)"));
+  m_stage_back = moving(QStringLiteral("transport-stage-back"), {}, Key::kStageBack);
+  m_back_up = moving(QStringLiteral("transport-back-up"), tr("Back up"), Key::kBackUp);
   m_pause = button(QStringLiteral("transport-pause"), tr("Pause"), tr("Slow down along the path and hold (P)"));
-  m_play = button(QStringLiteral("transport-play"), tr("Play"), tr("Move the robot along the path (P)"));
+  m_play = moving(QStringLiteral("transport-play"), tr("Play"), Key::kPlay);
+  m_stage = moving(QStringLiteral("transport-stage"), {}, Key::kStage);
   m_to_end = button(QStringLiteral("transport-to-end"), tr("To end"), tr("Show the end of the motion (End). Moves nothing."));
-  for (auto* each : {m_to_start, m_back_up, m_pause, m_play, m_to_end}) row->addWidget(each);
+  for (auto* each : {m_to_start, m_stage_back, m_back_up, m_pause, m_play, m_stage, m_to_end})
+    row->addWidget(each);
   row->addSpacing(8);
   auto* label = new QLabel(tr("Speed"), this);
   row->addWidget(label);
@@ -58,9 +67,7 @@ TransportBar::TransportBar(QWidget* parent) : QWidget(parent) {
   row->addWidget(m_speed_text);
 
   connect(m_to_start, &QToolButton::clicked, this, &TransportBar::toStartWanted);
-  connect(m_back_up, &QToolButton::clicked, this, &TransportBar::backUpWanted);
   connect(m_pause, &QToolButton::clicked, this, &TransportBar::pauseWanted);
-  connect(m_play, &QToolButton::clicked, this, &TransportBar::playWanted);
   connect(m_to_end, &QToolButton::clicked, this, &TransportBar::toEndWanted);
   connect(m_time, &TimeBar::scrubbed, this, &TransportBar::scrubWanted);
   connect(m_speed, &QSlider::valueChanged, this, [this](int value) { Q_EMIT speedWanted(value / 10.0); });
@@ -80,8 +87,30 @@ QToolButton* TransportBar::button(const QString& action, const QString& text, co
   return result;
 }
 
+QToolButton* TransportBar::moving(const QString& action, const QString& text, Key key) {
+  auto* result = button(action, text, {});
+  if (text.isEmpty()) result->setToolButtonStyle(Qt::ToolButtonIconOnly);
+  connect(result, &QToolButton::pressed, this, [this, key] { Q_EMIT pressed(key); });
+  connect(result, &QToolButton::released, this, &TransportBar::released);
+  return result;
+}
+
+QToolButton* TransportBar::keyButton(Key key) const {
+  switch (key) {
+    case Key::kPlay:
+      return m_play;
+    case Key::kBackUp:
+      return m_back_up;
+    case Key::kStage:
+      return m_stage;
+    case Key::kStageBack:
+      return m_stage_back;
+  }
+  return nullptr;
+}
+
 void TransportBar::refreshIcons() {
-  for (auto* each : {m_to_start, m_back_up, m_pause, m_play, m_to_end}) {
+  for (auto* each : {m_to_start, m_stage_back, m_back_up, m_pause, m_play, m_stage, m_to_end}) {
     each->setIcon(icon(each->property("action_icon").toString(), m_theme));
   }
 }
@@ -106,8 +135,21 @@ void TransportBar::showSpeed(double speed) {
 
 void TransportBar::setState(const TransportState& state) {
   m_state = state;
-  m_play->setEnabled(state.can_play && !(state.playing && state.speed > 0));
-  m_back_up->setEnabled(state.can_back_up && !(state.playing && state.speed < 0));
+  // A button that was greyed under the finger would let go of the motion.
+  const bool forwards = state.playing && !state.only_held && state.speed > 0,
+             back = state.playing && !state.only_held && state.speed < 0;
+  m_play->setEnabled((state.can_play || (m_play->isDown() && state.playing)) && !forwards);
+  m_back_up->setEnabled((state.can_back_up || (m_back_up->isDown() && state.playing)) && !back);
+  m_stage->setEnabled(state.why_not_stage.isEmpty() || (m_stage->isDown() && state.playing));
+  m_stage_back->setEnabled(state.why_not_stage_back.isEmpty() || (m_stage_back->isDown() && state.playing));
+  m_stage->setToolTip(state.why_not_stage.isEmpty()
+                          ? tr("Move the robot to the end of this stage and rest there (Shift+P)")
+                          : state.why_not_stage.toHtmlEscaped());
+  m_stage_back->setToolTip(state.why_not_stage_back.isEmpty()
+                               ? tr("Move the robot back to the start of this stage and rest there (Shift+B)")
+                               : state.why_not_stage_back.toHtmlEscaped());
+  m_badge->setText(state.badge);
+  m_badge->setVisible(!state.badge.isEmpty());
   m_pause->setEnabled(state.playing);
   m_to_start->setEnabled(state.loaded && state.can_scrub);
   m_to_end->setEnabled(state.loaded && state.can_scrub);

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "vision/camera/camera_file.h"
 
 namespace longarm::virtual_robot {
 namespace {
 
 constexpr double kZoomSpeed = 0.5;       // of the whole range per second
+constexpr double kFocusSpeed = 1.0;
+constexpr double kNearest_dioptres = 3;
+constexpr double kAperture_m = 0.002;
 
 bool isStereo(const planning::CameraSpec& spec) { return !spec.stereo_partner.empty(); }
 
@@ -18,15 +20,16 @@ bool isStereo(const planning::CameraSpec& spec) { return !spec.stereo_partner.em
 Result<CameraRig> CameraRig::load(const planning::Workcell& workcell) {
   CameraRig rig;
   for (const auto& spec : workcell.cameras) {
-    Camera camera;
-    camera.spec = spec;
-    const bool ptz = spec.role == "ptz";
-    camera.zoom_file = ptz && vision::readCameraFile(spec.calibration, 0.0).ok();
-    const auto file = vision::readCameraFile(spec.calibration, camera.zoom_file ? std::optional<double>(0) : std::nullopt);
-    if (!file) return file.error();
-    camera.wide = file->camera;
-    camera.wide.name = spec.name;
-    if (ptz) camera.zoom.emplace(0, 0, 1, kZoomSpeed, 10 * kZoomSpeed);
+    auto calibration = vision::CameraCalibration::read(spec.calibration, spec.digital_zoom, spec.width, spec.height);
+    if (!calibration) return calibration.error();
+    const auto wide = calibration->at(calibration->range().first);
+    if (!wide) return wide.error();
+    Camera camera{spec, std::move(*calibration), {}, {}};
+    if (spec.zooms) {
+      const auto [low, high] = camera.calibration.hasTable() ? camera.calibration.range() : std::pair(0.0, 1.0);
+      camera.zoom.emplace(low, low, high, kZoomSpeed, 10 * kZoomSpeed);
+      camera.focus.emplace(1, 0, 1, kFocusSpeed, 10 * kFocusSpeed);
+    }
     rig.m_cameras.emplace(spec.name, std::move(camera));
   }
   return rig;
@@ -62,29 +65,67 @@ double CameraRig::zoom(const std::string& camera) const {
   return zooms(camera) ? m_cameras.at(camera).zoom->position() : 0;
 }
 
+Status CameraRig::setFocus(const std::string& name, double focus) {
+  if (!zooms(name)) return {ErrorCode::kNotFound, "camera \"" + name + "\" has no focus"};
+  if (!(focus <= 1)) {
+    return {ErrorCode::kInvalidInput, "focus " + formatNumber(focus) + " of camera \"" + name +
+                                          "\" is not within 0 ... 1, nor negative for its own"};
+  }
+  Camera& camera = m_cameras.at(name);
+  camera.self_focusing = focus < 0;
+  if (focus >= 0) camera.focus->moveTo(focus);
+  return {};
+}
+
+double CameraRig::focus(const std::string& camera) const {
+  return zooms(camera) ? m_cameras.at(camera).focus->position() : 1;
+}
+
+void CameraRig::see(const std::string& name, double distance_m) {
+  if (!zooms(name)) return;
+  Camera& camera = m_cameras.at(name);
+  if (!camera.self_focusing) return;
+  const double sharp = std::clamp(1 - 1 / (kNearest_dioptres * std::max(distance_m, 0.01)), 0.0, 1.0);
+  if (camera.focused) {
+    camera.focus->moveTo(sharp);
+  } else {
+    camera.focus->holdAt(sharp);
+  }
+  camera.focused = true;
+}
+
+// The circle of confusion of a thin lens; a disc's standard deviation is a quarter of its diameter.
+double CameraRig::blur_px(const std::string& name, double distance_m) const {
+  if (!zooms(name)) return 0;
+  const double focused = kNearest_dioptres * (1 - focus(name));
+  return lens(name).fx * kAperture_m * std::abs(focused - 1 / std::max(distance_m, 0.01)) / 4;
+}
+
 void CameraRig::tick(double seconds) {
   for (auto& [name, camera] : m_cameras) {
     if (camera.zoom) camera.zoom->step(seconds);
+    if (camera.focus) camera.focus->step(seconds);
   }
 }
 
 vision::CameraModel CameraRig::lens(const std::string& name) const {
   const Camera& camera = m_cameras.at(name);
   const double zoom = this->zoom(name);
-  if (zoom == 0) return camera.wide;
-  if (camera.zoom_file) {
-    if (const auto file = vision::readCameraFile(camera.spec.calibration, zoom)) {
-      vision::CameraModel lens = file->camera;
-      lens.name = name;
-      return lens;
-    }
-  }
-  vision::CameraModel lens = camera.wide;
+  const bool table = camera.calibration.hasTable();
+  vision::CameraModel lens = camera.calibration.at(table ? zoom : 0)->camera;
+  lens.name = name;
+  if (table || zoom == 0) return lens;
   const double factor = std::pow(kZoomFactor, zoom);
   lens.fx *= factor;
   lens.fy *= factor;
   lens.skew *= factor;
   return lens;
+}
+
+Pose CameraRig::mount(const std::string& name) const {
+  const Camera& camera = m_cameras.at(name);
+  if (!camera.calibration.hasTable()) return Pose::Identity();
+  return camera.calibration.at(zoom(name))->pose->pose;
 }
 
 std::vector<std::string> CameraRig::takeDue(double now_s) {

@@ -11,7 +11,7 @@
 #include "app/virtual_robot/joint_servo.h"
 #include "core/result.h"
 #include "planning/world/workcell.h"
-#include "vision/camera/camera_model.h"
+#include "vision/camera/camera_calibration.h"
 
 namespace longarm::virtual_robot {
 
@@ -30,11 +30,20 @@ class CameraRig {
   /// Wanted zoom, 0 (wide) ... 1; the lens turns at its own rate.  @returns kNotFound, kInvalidInput.
   Status setZoom(const std::string& camera, double zoom);
   double zoom(const std::string& camera) const;
+  /// 0 near (a third of a metre) ... 1 infinity; negative: the camera focuses by itself.  As setZoom.
+  Status setFocus(const std::string& camera, double focus);
+  double focus(const std::string& camera) const;
   void tick(double seconds);
+  /// What the middle of the picture shows is so far away [m]: a camera that focuses by itself turns to it.
+  void see(const std::string& camera, double distance_m);
+  /// Blur of things at this distance by the focus as it is now, 1 sigma [px]; 0 for a camera without focus.
+  double blur_px(const std::string& camera, double distance_m) const;
 
-  /// The lens as it truly is now.  A zoom camera file is read at the setting; with a plain one the focal lengths grow
-  /// kZoomFactor-fold from zoom 0 to 1 while the distortion coefficients stay.
+  /// The lens as it truly is now: by its zoom table; with a plain camera file the focal lengths grow kZoomFactor-fold
+  /// from zoom 0 to 1 while the distortion coefficients stay.
   vision::CameraModel lens(const std::string& camera) const;
+  /// Optical frame in the camera's link: a zoom lens' entrance pupil wanders.
+  Pose mount(const std::string& camera) const;
 
   /// The cameras of one head that are due, both of a pair together; empty when nothing is.  Their next turn is set
   /// from `now_s`.  Called again, it returns the next head.
@@ -46,9 +55,9 @@ class CameraRig {
  private:
   struct Camera {
     planning::CameraSpec spec;
-    vision::CameraModel wide;
-    bool zoom_file = false;
-    std::optional<JointServo> zoom;
+    vision::CameraCalibration calibration;
+    std::optional<JointServo> zoom, focus;
+    bool self_focusing = true, focused = false;
     bool wanted = false;
     double period_s = kPeriod_s, due_s = 0;
   };

@@ -104,8 +104,10 @@ void ContactWatch::checkTouchGoals(const Eigen::VectorXd& q) {
   }
 }
 
-void ContactWatch::check(const Eigen::VectorXd& q, const Pose& X_WB, const TrueWorld& world, double now_s) {
-  if (m_revision != world.revision() || !X_WB.isApprox(m_X_WB, 1e-12)) rebuild(X_WB, world);
+void ContactWatch::check(const Eigen::VectorXd& q, const Pose& X_WB, const TrueWorld& world, double now_s,
+                         double shift) {
+  if (m_revision != world.revision() || (X_WB.matrix() - m_X_WB.matrix()).cwiseAbs().maxCoeff() > shift)
+    rebuild(X_WB, world);
   if (m_held != world.heldName()) noteSupports(q, world);
   planning::Contact contact;
   for (int i = 0; i < kMostAtOnce && m_collisions->touching(q, &contact); ++i) {

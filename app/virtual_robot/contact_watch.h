@@ -32,7 +32,8 @@ class ContactWatch {
   ~ContactWatch();
 
   /// Looks at the true configuration (full) with the base at X_WB.
-  void check(const Eigen::VectorXd& q, const Pose& X_WB, const TrueWorld& world, double now_s);
+  /// @param shift  A base that has moved by less since it was last prepared for counts as standing there [m].
+  void check(const Eigen::VectorXd& q, const Pose& X_WB, const TrueWorld& world, double now_s, double shift);
 
   const std::vector<ContactEvent>& contacts() const { return m_contacts; }
   bool touched(const std::string& object) const { return m_touched.count(object) != 0; }

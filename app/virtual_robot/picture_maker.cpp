@@ -25,6 +25,7 @@ namespace {
 constexpr int kRasterWidth = 768, kRasterHeight = 576;
 // Instead of multisampling, which costs more than the scene under software GL: the blur of a real lens [px of raster].
 constexpr double kLensBlur = 0.6;
+constexpr double kSharp_px = 0.2, kWorstBlur_px = 12;    // Less is not seen; more makes no difference.
 constexpr double kGroundSize = 40;       // [m]
 constexpr int kJpegQuality = 92;
 constexpr const char* kGround = "ground";
@@ -144,6 +145,7 @@ Result<cv::Mat> PictureMaker::render(const WorldSnapshot& world, const PictureOr
   cv::Mat raster = m_impl->renderer->render();
   cv::GaussianBlur(raster, raster, {3, 3}, kLensBlur);
   cv::Mat picture = warp.apply(raster);
+  if (order.blur_px > kSharp_px) cv::GaussianBlur(picture, picture, {}, std::min(order.blur_px, kWorstBlur_px));
   if (order.glare) addGlare(picture);
   if (order.dark) darken(picture);
   m_impl->noise.addTo(picture, order.noise, order.seed ^ static_cast<unsigned>(std::llround(world.time_s * 1000)));

@@ -24,6 +24,7 @@ struct PictureOrder {
   double noise = 0;                      ///< 1 sigma [grey levels]
   unsigned seed = 0;                     ///< Of the noise, with the exposure's time.
   bool dark = false, glare = false;      ///< Faults.
+  double blur_px = 0;                    ///< Out of focus, 1 sigma [px].
 };
 
 /// A picture as it goes out.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/virtual_robot/seeded_random.h"
 #include "core/text.h"
 
 namespace longarm::virtual_robot {
@@ -14,6 +15,9 @@ constexpr double kBreakaway = 0.02;        // a sticking joint moves when it is 
 constexpr double kSticksAgain = 0.002;     // ... until it is this near
 constexpr double kKnock = 1.0 * M_PI / 180;
 constexpr double kGraspTolerance = 1e-9;
+// How far the base may be from where contacts were last prepared; preparing costs too much for every reading
+// [m].
+constexpr double kDrivingShift = 5e-3, kRestingShift = 1e-12;
 
 std::set<std::string> touchGoals(const planning::Scenario& scenario) {
   std::set<std::string> out;
@@ -96,6 +100,12 @@ RobotBody::RobotBody(const planning::Workcell& workcell, const planning::Scenari
       m_q(start) {
   const auto& model = *m_workcell.model;
   if (zone) m_gripper.emplace(m_workcell, *zone);
+  if (m_workcell.base) {
+    const double share = scenario.imperfections.odometry_share;
+    SeededRandom random(seed + 17);
+    const double forward = 1 + random.between(-share, share), turn = 1 + random.between(-share, share);
+    m_base.emplace(*m_workcell.base, forward, turn);
+  }
   m_arm_indices = planning::movingIndices(model, m_workcell.arm);
   m_motor = planning::groupPositions(model, m_workcell.arm, start);
   m_motor_velocity = Eigen::VectorXd::Zero(m_motor.size());
@@ -128,6 +138,7 @@ void RobotBody::heartbeat() {
 
 void RobotBody::clientLost() {
   if (!m_quiet) m_arm.brake(time_s());
+  if (m_base) m_base->halt();
   m_quiet = true;
 }
 
@@ -139,7 +150,21 @@ Status RobotBody::follow(const Horizon& horizon) {
   return m_arm.accept(horizon, time_s());
 }
 
-void RobotBody::stop() { m_arm.stop(time_s()); }
+void RobotBody::stop() {
+  m_arm.stop(time_s());
+  if (m_base) m_base->halt();
+}
+
+Status RobotBody::drive(const BaseTwist& twist) {
+  if (!m_base) return {ErrorCode::kNotFound, "this robot has no base that drives"};
+  if (twist.still()) return m_base->command(twist, time_s());
+  if (m_quiet) {
+    return {ErrorCode::kRefused, "the base refuses to drive: no heartbeat for " + formatNumber(kQuiet_s) +
+                                     " s; publish /longarm/heartbeat at 20 Hz"};
+  }
+  if (m_arm.moving(time_s())) return {ErrorCode::kRefused, "the base refuses to drive: the arm moves"};
+  return m_base->command(twist, time_s());
+}
 
 Status RobotBody::moveGripper(double joint) {
   if (!m_gripper) return {ErrorCode::kNotFound, "this robot has no gripper"};
@@ -169,6 +194,7 @@ Status RobotBody::aim(const std::string& pan_tilt, const std::map<std::string, d
 void RobotBody::watchHeartbeat() {
   if (m_quiet || time_s() - m_heartbeat_s <= kQuiet_s) return;
   m_arm.brake(time_s());
+  if (m_base) m_base->halt();
   m_quiet = true;
 }
 
@@ -219,10 +245,12 @@ void RobotBody::tick() {
   }
   m_faults.tick(time_s(), m_arm.moving(time_s()), kTick_s);
   watchHeartbeat();
+  if (m_base) m_base->step(time_s(), kTick_s);
   driveArm();
   driveOthers();
   if (!readingIsNew()) return;
-  m_contacts.check(m_q, X_WB(), m_world, time_s());
+  m_contacts.check(m_q, X_WB(), m_world, time_s(),
+                   m_base && m_base->moving() ? kDrivingShift : kRestingShift);
   read();
 }
 
@@ -259,8 +287,9 @@ std::map<std::string, double> RobotBody::trueJoints() const {
 }
 
 Pose RobotBody::X_WB() const {
-  if (!m_faults.active("moved_base")) return Pose::Identity();
-  return poseFromRpy({0.02, 0.01, 0}, {0, 0, 1.0 * M_PI / 180});
+  const Pose X_WB = m_base ? poseOf(m_base->truth()) : Pose::Identity();
+  if (!m_faults.active("moved_base")) return X_WB;
+  return X_WB * poseFromRpy({0.02, 0.01, 0}, {0, 0, 1.0 * M_PI / 180});
 }
 
 Pose RobotBody::X_WT() const {

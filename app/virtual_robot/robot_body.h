@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "app/virtual_robot/arm_motion.h"
+#include "app/virtual_robot/base_motion.h"
 #include "app/virtual_robot/contact_watch.h"
 #include "app/virtual_robot/faults.h"
 #include "app/virtual_robot/gripper.h"
@@ -57,6 +58,8 @@ class RobotBody {
   /// ArmMotion::accept, or kRefused when there is no heartbeat.
   Status follow(const Horizon& horizon);
   void stop();
+  /// BaseMotion::command, or kNotFound, or kRefused when there is no heartbeat or the arm moves.
+  Status drive(const BaseTwist& twist);
   Status moveGripper(double joint);
   /// @returns kNotFound, or kInvalidInput for numbers that are not finite.
   Status aim(const std::string& pan_tilt, const std::map<std::string, double>& joints);
@@ -65,6 +68,8 @@ class RobotBody {
   // What it measures.
   /// All joints of the robot, by URDF name, as the encoders read them; stamp on the robot's clock.
   const JointState& measured() const { return m_measured; }
+  /// Null when the robot has no base.
+  const BaseMotion* base() const { return m_base ? &*m_base : nullptr; }
   bool holding() const { return m_gripper && m_gripper->holding(); }
 
   // The truth.
@@ -107,6 +112,7 @@ class RobotBody {
   JointErrors m_errors;
   std::map<std::string, Axis> m_axes;              // joints of neither arm nor gripper
   std::optional<Gripper> m_gripper;
+  std::optional<BaseMotion> m_base;
   int m_gripper_index = -1;
   TrueWorld m_world;
   ContactWatch m_contacts;

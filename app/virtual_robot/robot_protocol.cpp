@@ -15,6 +15,8 @@ constexpr std::size_t kMaxTold = 64;
 constexpr std::size_t kMaxDelayed = 4096;
 constexpr const char* kJoints = "/joint_states";
 constexpr const char* kHolding = "/gripper_controller/holding";
+constexpr const char* kDrive = "/cmd_vel";
+constexpr const char* kOdometry = "/odom";
 
 // "NAME" of "<before>NAME<after>", or nothing.
 std::optional<std::string> between(const std::string& topic, const std::string& before, const std::string& after) {
@@ -26,6 +28,7 @@ std::optional<std::string> between(const std::string& topic, const std::string& 
 std::string imageTopic(const std::string& camera) { return "/camera/" + camera + "/image/compressed"; }
 std::string infoTopic(const std::string& camera) { return "/camera/" + camera + "/camera_info"; }
 std::string zoomTopic(const std::string& camera) { return "/camera/" + camera + "/zoom_state"; }
+std::string focusTopic(const std::string& camera) { return "/camera/" + camera + "/focus_state"; }
 
 rosbridge::CameraInfoMessage infoMessage(const Picture& picture, const std::string& frame) {
   const vision::CameraModel& lens = picture.lens;
@@ -111,11 +114,17 @@ Status RobotProtocol::command(const rosbridge::Publish& message) {
     m_body.stop();
     return {};
   }
+  if (topic == kDrive) {
+    const auto read = rosbridge::readAs<rosbridge::TwistMessage>(message.message);
+    const auto twist = read ? rosbridge::toTwist(*read) : Result<BaseTwist>(read.error());
+    return twist ? m_body.drive(*twist) : Status(twist.error());
+  }
   if (const auto name = between(topic, "/pan_tilt/", "/command")) return aim(*name, message.message);
-  const auto zoomed = between(topic, "/camera/", "/zoom");
-  if (topic != "/gripper_controller/command" && !zoomed) return unknownTopic(topic);
+  const auto zoomed = between(topic, "/camera/", "/zoom"), focused = between(topic, "/camera/", "/focus");
+  if (topic != "/gripper_controller/command" && !zoomed && !focused) return unknownTopic(topic);
   const auto value = rosbridge::readAs<rosbridge::Float64Message>(message.message);
   if (!value) return value.error();
+  if (focused) return m_rig.setFocus(*focused, value->data);
   return zoomed ? m_rig.setZoom(*zoomed, value->data) : m_body.moveGripper(value->data);
 }
 
@@ -144,9 +153,10 @@ Status RobotProtocol::aim(const std::string& pan_tilt, const rosbridge::Body& me
 
 void RobotProtocol::subscribe(const rosbridge::Subscribe& wish) {
   std::set<std::string> known = {kJoints, kHolding};
+  if (m_body.base() != nullptr) known.insert(kOdometry);
   for (const auto& camera : m_rig.names()) {
     known.insert({imageTopic(camera), infoTopic(camera)});
-    if (m_rig.zooms(camera)) known.insert(zoomTopic(camera));
+    if (m_rig.zooms(camera)) known.insert({zoomTopic(camera), focusTopic(camera)});
   }
   if (known.count(wish.topic) == 0) {
     tell("warning", "this robot publishes nothing on topic \"" + wish.topic + "\"");
@@ -204,8 +214,9 @@ void RobotProtocol::publishStates() {
   if (due(kHolding, m_body.holding() ? 1 : 0)) publish(kHolding, rosbridge::BoolMessage{m_body.holding()});
   for (const auto& camera : m_rig.names()) {
     if (!m_rig.zooms(camera)) continue;
-    const double zoom = m_rig.zoom(camera);
+    const double zoom = m_rig.zoom(camera), focus = m_rig.focus(camera);
     if (due(zoomTopic(camera), zoom)) publish(zoomTopic(camera), rosbridge::Float64Message{zoom});
+    if (due(focusTopic(camera), focus)) publish(focusTopic(camera), rosbridge::Float64Message{focus});
   }
 }
 
@@ -213,6 +224,8 @@ void RobotProtocol::afterTick() {
   flushDelayed();
   if (!m_connected || !m_body.readingIsNew()) return;
   publish(kJoints, rosbridge::toMessage(m_body.measured(), m_body.measured().stamp_s));
+  if (m_body.base() != nullptr)
+    publish(kOdometry, rosbridge::toMessage(m_body.base()->odometry(), m_body.time_s()));
   publishStates();
 }
 

@@ -35,12 +35,12 @@ json goalsJson(const RobotBody& body) {
   return out;
 }
 
-json linksJson(const RobotBody& body) {
+json linksJson(const RobotBody& body, const CameraRig& rig) {
   json out = {{body.workcell().arm.tip_link, poseJson(body.X_WT())}};
   const auto snapshot = body.snapshot();
   for (const auto& camera : body.workcell().cameras) {
     const auto pose = snapshot.X_WC.find(camera.name);
-    if (pose != snapshot.X_WC.end()) out[camera.link] = poseJson(pose->second);
+    if (pose != snapshot.X_WC.end()) out[camera.link] = poseJson(pose->second * rig.mount(camera.name));
   }
   return out;
 }
@@ -84,13 +84,14 @@ RobotServices::Answer RobotServices::truth() const {
   json mechanisms = json::object();
   for (const auto& mechanism : m_body.world().mechanisms()) mechanisms[mechanism.spec().name] = mechanism.value();
   return rosbridge::Body(json{{"time", m_body.time_s()},
+                              {"base", poseJson(m_body.X_WB())},
                               {"mechanisms", mechanisms},
                               {"joints", m_body.trueJoints()},
                               {"objects", objects},
                               {"held", m_body.world().heldName()},
                               {"contacts", contactsJson(m_body)},
                               {"goals", goalsJson(m_body)},
-                              {"links", linksJson(m_body)}});
+                              {"links", linksJson(m_body, m_rig)}});
 }
 
 RobotServices::Answer RobotServices::step(const rosbridge::Body& args) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/virtual_robot/shape_rays.h"
 #include "planning/world/scenario.h"
 #include "planning/world/workcell.h"
 
@@ -10,11 +11,22 @@ namespace longarm::virtual_robot {
 namespace {
 
 constexpr double kRenderShare = 0.7;     // of the time, so that the console gets its part of the processor
+constexpr double kFarthest_m = 100;
 constexpr double kLongestRest_s = 0.3;   // counted of a picture that took long, as the first one does
 
 Result<planning::Workcell> workcellOf(const planning::Scenario& scenario) {
   if (scenario.robot != "longarm_one") return planning::loadWorkcell(scenario.robot);
   return planning::loadBuiltInWorkcell(scenario.variant);
+}
+
+// To what the middle of the picture shows: a body, the ground, or nothing far away [m].
+double distanceAhead(const Pose& X_WC, const std::vector<planning::WorldObject>& objects) {
+  const Eigen::Vector3d from = X_WC.translation(), ahead = X_WC.linear().col(2);
+  double nearest = ahead.z() < -1e-6 && from.z() > 0 ? std::min(kFarthest_m, -from.z() / ahead.z()) : kFarthest_m;
+  for (const auto& object : objects) {
+    if (const auto there = rayDistance(object.shape, object.X_WO, from, ahead)) nearest = std::min(nearest, *there);
+  }
+  return nearest;
 }
 
 std::string usualCamera(const planning::Workcell& workcell) {
@@ -92,15 +104,20 @@ void VirtualRobot::publish(Picture picture) {
   m_protocol->publish(picture);
 }
 
-PictureRequest VirtualRobot::requestFor(const std::vector<std::string>& cameras) const {
+PictureRequest VirtualRobot::requestFor(const std::vector<std::string>& cameras) {
   PictureRequest request{m_body->snapshot(), {}};
   const FaultBoard& faults = static_cast<const RobotBody&>(*m_body).faults();
   const std::string usual = usualCamera(m_body->workcell());
   for (const auto& camera : cameras) {
     unsigned seed = m_options.seed;
     for (const char c : camera) seed = seed * 31 + static_cast<unsigned char>(c);
+    Pose& X_WC = request.world.X_WC[camera];
+    X_WC = X_WC * m_rig.mount(camera);
+    const double distance = m_rig.zooms(camera) ? distanceAhead(X_WC, request.world.objects) : 1;
+    m_rig.see(camera, distance);
     request.orders.push_back({camera, m_rig.lens(camera), m_body->scenario().imperfections.image_noise, seed,
-                              faults.strikes("dark_camera", camera, usual), faults.strikes("glare", camera, usual)});
+                              faults.strikes("dark_camera", camera, usual), faults.strikes("glare", camera, usual),
+                              m_rig.blur_px(camera, distance)});
   }
   return request;
 }

@@ -58,7 +58,7 @@ class VirtualRobot {
   void step(double seconds);
   void tick();
   void takePictures();
-  PictureRequest requestFor(const std::vector<std::string>& cameras) const;
+  PictureRequest requestFor(const std::vector<std::string>& cameras);
   void collect(Picture picture);
   void publish(Picture picture);
 

@@ -136,6 +136,20 @@ std::array<double, N> matrix(const Json* value, const char* key) {
   return out;
 }
 
+std::array<double, 3> readVector(const Json& value) {
+  return {number(need(value, "x"), "x"), number(need(value, "y"), "y"), number(need(value, "z"), "z")};
+}
+
+TwistMessage readTwist(const Json& value) {
+  return {readVector(need(value, "linear")), readVector(need(value, "angular"))};
+}
+
+Json vectorJson(const std::array<double, 3>& v) { return {{"x", v[0]}, {"y", v[1]}, {"z", v[2]}}; }
+
+Json twistJson(const TwistMessage& m) {
+  return {{"linear", vectorJson(m.linear)}, {"angular", vectorJson(m.angular)}};
+}
+
 double readTime(const Json& value, const char* key) {
   if (!value.is_object()) throw BadField(std::string("\"") + key + "\" is not a time");
   const Json* sec = find(value, "secs", "sec");
@@ -267,6 +281,22 @@ Body write(const CameraInfoMessage& m, Dialect dialect) {
 }
 
 Body write(const Float64Message& m, Dialect) { return Body(Json{{"data", m.data}}); }
+Body write(const TwistMessage& m, Dialect) { return Body(twistJson(m)); }
+
+Body write(const OdometryMessage& m, Dialect dialect) {
+  return Body(Json{{"header", writeHeader(m.header, dialect)},
+                   {"child_frame_id", m.child_frame_id},
+                   {"pose",
+                    {{"pose",
+                      {{"position", vectorJson(m.position)},
+                       {"orientation",
+                        {{"x", m.orientation[0]},
+                         {"y", m.orientation[1]},
+                         {"z", m.orientation[2]},
+                         {"w", m.orientation[3]}}}}}}},
+                   {"twist", {{"twist", twistJson(m.twist)}}}});
+}
+
 Body write(const BoolMessage& m, Dialect) { return Body(Json{{"data", m.data}}); }
 Body write(const StringMessage& m, Dialect) { return Body(Json{{"data", m.data}}); }
 Body write(const EmptyMessage&, Dialect) { return Body(); }
@@ -325,6 +355,23 @@ Status read(const Body& body, CameraInfoMessage& message) {
     m.k = matrix<9>(find(value, "K", "k"), "K");
     if (const Json* r = find(value, "R", "r")) m.r = matrix<9>(r, "R");
     if (const Json* p = find(value, "P", "p")) m.p = matrix<12>(p, "P");
+  });
+}
+
+Status read(const Body& body, TwistMessage& message) {
+  return guarded(body, message, [](const Json& value, TwistMessage& m) { m = readTwist(value); });
+}
+
+Status read(const Body& body, OdometryMessage& message) {
+  return guarded(body, message, [](const Json& value, OdometryMessage& m) {
+    m.header = readHeader(value);
+    if (const Json* frame = find(value, "child_frame_id")) m.child_frame_id = text(*frame, "child_frame_id");
+    const Json& pose = need(need(value, "pose"), "pose");
+    m.position = readVector(need(pose, "position"));
+    const Json& q = need(pose, "orientation");
+    m.orientation = {number(need(q, "x"), "x"), number(need(q, "y"), "y"), number(need(q, "z"), "z"),
+                     number(need(q, "w"), "w")};
+    m.twist = readTwist(need(need(value, "twist"), "twist"));
   });
 }
 

@@ -17,6 +17,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "core/base_motion.h"
 #include "core/motion.h"
 #include "core/result.h"
 
@@ -90,6 +91,20 @@ struct Float64Message {
   double data = 0;
 };
 
+struct TwistMessage {
+  static constexpr const char* kType = "geometry_msgs/Twist";
+  std::array<double, 3> linear{}, angular{};  ///< [m/s], [rad/s]
+};
+
+struct OdometryMessage {
+  static constexpr const char* kType = "nav_msgs/Odometry";
+  Header header;
+  std::string child_frame_id;
+  std::array<double, 3> position{};               ///< [m]
+  std::array<double, 4> orientation{0, 0, 0, 1};  ///< x, y, z, w
+  TwistMessage twist;                             ///< In the child frame.
+};
+
 struct BoolMessage {
   static constexpr const char* kType = "std_msgs/Bool";
   bool data = false;
@@ -109,6 +124,8 @@ Body write(const JointTrajectoryMessage& message, Dialect dialect = Dialect::kRo
 Body write(const CompressedImageMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const CameraInfoMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const Float64Message& message, Dialect dialect = Dialect::kRos1);
+Body write(const TwistMessage& message, Dialect dialect = Dialect::kRos1);
+Body write(const OdometryMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const BoolMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const StringMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const EmptyMessage& message, Dialect dialect = Dialect::kRos1);
@@ -118,6 +135,8 @@ Status read(const Body& body, JointTrajectoryMessage& message);
 Status read(const Body& body, CompressedImageMessage& message);
 Status read(const Body& body, CameraInfoMessage& message);
 Status read(const Body& body, Float64Message& message);
+Status read(const Body& body, TwistMessage& message);
+Status read(const Body& body, OdometryMessage& message);
 Status read(const Body& body, BoolMessage& message);
 Status read(const Body& body, StringMessage& message);
 Status read(const Body& body, EmptyMessage& message);
@@ -135,6 +154,12 @@ JointTrajectoryMessage toMessage(const Horizon& horizon, double start_s);
 /// What the robot's side does with it: start_s is the header's stamp; velocities and accelerations that are
 /// left out are zero.
 Result<Horizon> toHorizon(const JointTrajectoryMessage& message);
+TwistMessage toMessage(const BaseTwist& twist);
+/// kInvalidInput for numbers that are not finite.  What a base on the ground cannot do is left out.
+Result<BaseTwist> toTwist(const TwistMessage& message);
+OdometryMessage toMessage(const BaseState& state, double stamp_s);
+/// kInvalidInput as toTwist(), or for a quaternion that is none.  stamp_s is the header's.
+Result<BaseState> toBaseState(const OdometryMessage& message);
 JointStateMessage toMessage(const JointState& state, double stamp_s);
 /// kInvalidInput when a position is missing or not finite, or a joint is named twice.  stamp_s is the header's.
 Result<JointState> toJointState(const JointStateMessage& message);

@@ -1,4 +1,5 @@
 // Between the motion values of core and their messages.
+#include <cmath>
 #include <set>
 
 #include "core/text.h"
@@ -72,6 +73,45 @@ Result<Horizon> toHorizon(const JointTrajectoryMessage& message) {
     out.points.push_back(std::move(*point));
   }
   return out;
+}
+
+TwistMessage toMessage(const BaseTwist& twist) {
+  return {{twist.forward, twist.left, 0}, {0, 0, twist.turn}};
+}
+
+Result<BaseTwist> toTwist(const TwistMessage& message) {
+  for (const auto* part : {&message.linear, &message.angular}) {
+    for (const double value : *part) {
+      if (!std::isfinite(value))
+        return Error{ErrorCode::kInvalidInput, "twist: holds a number that is not finite"};
+    }
+  }
+  return BaseTwist{message.linear[0], message.linear[1], message.angular[2]};
+}
+
+OdometryMessage toMessage(const BaseState& state, double stamp_s) {
+  OdometryMessage out;
+  out.header.stamp_s = stamp_s;
+  out.header.frame_id = "odom";
+  out.child_frame_id = "base_link";
+  out.position = {state.x, state.y, 0};
+  out.orientation = {0, 0, std::sin(state.yaw / 2), std::cos(state.yaw / 2)};
+  out.twist = toMessage(state.twist);
+  return out;
+}
+
+Result<BaseState> toBaseState(const OdometryMessage& message) {
+  const auto twist = toTwist(message.twist);
+  if (!twist) return twist.error();
+  const auto& p = message.position;
+  const auto& q = message.orientation;
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !(std::abs(norm - 1) < 0.01)) {
+    return Error{ErrorCode::kInvalidInput,
+                 "odometry: its pose is not finite, or its quaternion has length " + formatNumber(norm)};
+  }
+  const double yaw = std::atan2(2 * (q[3] * q[2] + q[0] * q[1]), 1 - 2 * (q[1] * q[1] + q[2] * q[2]));
+  return BaseState{message.header.stamp_s, p[0], p[1], yaw, *twist};
 }
 
 JointStateMessage toMessage(const JointState& state, double stamp_s) {

@@ -48,7 +48,7 @@ Status SimulatedCamera::setZoom(double zoom01) {
   });
 }
 
-double SimulatedCamera::zoom() const {
+Result<double> SimulatedCamera::zoom() const {
   std::lock_guard<std::mutex> lock(m_mutex);
   return m_zoom;
 }

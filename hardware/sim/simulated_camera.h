@@ -23,7 +23,9 @@ class SimulatedCamera final : public RunnerDevice<Camera> {
 
   std::shared_ptr<const Frame> latestFrame() const override;
   Status setZoom(double zoom01) override;
-  double zoom() const;
+  bool zooms() const override { return true; }
+  Result<double> zoom() const override;
+  Result<double> zoomAt(double /*stamp_s*/) const override { return zoom(); }   ///< It is there at once.
 
   void injectFault(const std::string& why);
   /// A frozen picture: no new frames come though the camera is active.

@@ -5,9 +5,9 @@
 #include <exception>
 
 #include "core/text.h"
+#include "planning/macros/free_move.h"
 #include "planning/macros/macro_arguments.h"
 #include "planning/macros/planning_run.h"
-#include "planning/motion/path_planner.h"
 #include "planning/motion/timed_motion.h"
 #include "planning/trajectory/time_parameterization.h"
 
@@ -80,30 +80,7 @@ class CannedRun {
   }
 
   Plan move(const ArmSpace& space) {
-    m_run.progress(0.2, "searching a path");
-    PathRequest request;
-    request.start = m_run.start();
-    request.goals = {m_goal};
-    request.seed = m_run.context().seed;
-    request.deadline_s = m_run.deadline_s();
-    request.cancel = m_run.context().cancel;
-    const PathAnswer path = planPath(space, request);
-    if (path.status == PlanStatus::kTimeout || path.status == PlanStatus::kCancelled) {
-      return m_run.fail(path.status, interruption(path.status, m_run.context().budget_s));
-    }
-    if (path.status != PlanStatus::kOk) {
-      return m_run.fail(PlanStatus::kNoPath, "No collision-free way to \"" + m_name + "\" was found in " +
-                                                 std::to_string(path.iterations) +
-                                                 " tries. Jog the arm away from obstacles and plan again.", 1, m_run.plan().goal);
-    }
-    m_run.progress(0.7, "timing the motion");
-    const auto trajectory = timedPath(m_run.workcell(), space, path.waypoints, {m_run.workcell().max_tool_speed});
-    if (!trajectory) return m_run.fail(PlanStatus::kNoPath, trajectory.error().message);
-    if (m_run.cancelled()) return m_run.fail(PlanStatus::kCancelled, interruption(PlanStatus::kCancelled, 0));
-    const double start = m_run.plan().trajectory.duration();
-    appendStage(m_run.plan(), "transit", false, *trajectory);
-    measureRatios(m_run.workcell(), m_run.plan());
-    m_run.plan().min_clearance = leastClearance(space, m_run.plan().trajectory, start, m_run.plan().trajectory.duration());
+    if (!appendFreeMove(m_run, space, m_goal, "\"" + m_name + "\"", "transit")) return m_run.plan();
     return m_run.finish();
   }
 

@@ -25,6 +25,8 @@ constexpr double kCheckStep_s = 0.0025;
 constexpr double kRateLag_s = 0.08;
 // Points of a horizon are at least this far apart in time.
 constexpr double kMinPointSpacing_s = 0.001;
+// Slower than this the path is at rest [rad/s or m/s].
+constexpr double kAtRest = 1e-9;
 
 Error jointError(const Trajectory& trajectory, Eigen::Index j, double t, const std::string& what,
                  double value, double limit) {
@@ -87,6 +89,7 @@ struct Player::Impl {
   double speed = 1;
   double now = 0;
   std::optional<double> preview;  // Scrubbed cursor; the arm is where the profile is.
+  internal::PathStretch stretch;  // How far to play.
   std::uint64_t sequence = 0;
 
   RateState current() const { return profile.at(now); }
@@ -94,7 +97,7 @@ struct Player::Impl {
   double commandedRate() const { return atRest() ? 0 : current().r; }
   bool atWantedEnd() const {
     const double tau = current().tau;
-    return (speed > 0 && tau >= table.duration()) || (speed < 0 && tau <= 0);
+    return (speed > 0 && tau >= stretch.high) || (speed < 0 && tau <= stretch.low);
   }
   int brakingPieces() const {
     const double left = options.horizon_s - options.commit_s - options.point_spacing_s;
@@ -104,13 +107,13 @@ struct Player::Impl {
   void standAt(double tau) {
     RateState rest;
     rest.tau = tau;
-    profile = RateProfile(table.duration(), now, rest);
+    profile = RateProfile(stretch, now, rest);
     preview.reset();
   }
 
   // One decision: u goes to `level` within a piece, then braking to rest.
   RateProfile candidate(const RateProfile::Knot& from, double level) const {
-    RateProfile next(table.duration(), from.t, from.state);
+    RateProfile next(stretch, from.t, from.state);
     next.append(options.point_spacing_s, level);
     next.appendBraking(options.point_spacing_s, brakingPieces());
     return next;
@@ -181,7 +184,36 @@ struct Player::Impl {
     if (!atRest()) return;
     if (state == PlayerState::kPausing) state = PlayerState::kPaused;
     if (state == PlayerState::kPlaying && speed != 0 && atWantedEnd()) {
-      state = speed > 0 ? PlayerState::kDone : PlayerState::kReady;
+      state = endState();
+    }
+  }
+
+  PlayerState endState() const {
+    const double tau = current().tau;
+    if (tau > 0 && tau < table.duration()) return PlayerState::kPaused;
+    return speed > 0 ? PlayerState::kDone : PlayerState::kReady;
+  }
+
+  // The whole path is open again.
+  void openStretch() { setStretch({0, table.duration()}); }
+  void setStretch(const internal::PathStretch& wanted) {
+    stretch = wanted;
+    profile.setStretch(wanted);
+  }
+
+  // In place of the rest of the horizon in force the shortest braking that keeps the limits.
+  void brakeSooner() {
+    constexpr int kLeastPieces = 3;
+    const double h = options.point_spacing_s, from = now + options.commit_s;
+    for (int pieces = kLeastPieces; from + pieces * h < profile.endTime() - 1e-6; ++pieces) {
+      RateProfile committed = profile.upTo(from);
+      const RateProfile::Knot start = committed.knots().back();
+      RateProfile braking(stretch, start.t, start.state);
+      braking.appendBraking(h, pieces);
+      if (!keepsLimits(braking)) continue;
+      committed.extendBy(braking);
+      profile = std::move(committed);
+      return;
     }
   }
 
@@ -243,6 +275,7 @@ Status Player::load(const Trajectory& trajectory) {
   if (auto status = checkLimits(trajectory, m_impl->limits); !status) return status;
   m_impl->trajectory = trajectory;
   m_impl->table = PathTable(trajectory, m_impl->limits);
+  m_impl->openStretch();
   m_impl->standAt(0);
   m_impl->state = PlayerState::kReady;
   return {};
@@ -251,6 +284,7 @@ Status Player::load(const Trajectory& trajectory) {
 void Player::clear() {
   m_impl->trajectory = {};
   m_impl->table = {};
+  m_impl->openStretch();
   m_impl->standAt(0);
   m_impl->state = PlayerState::kEmpty;
 }
@@ -258,8 +292,32 @@ void Player::clear() {
 void Player::play() {
   if (m_impl->state == PlayerState::kEmpty || m_impl->state == PlayerState::kHalted) return;
   m_impl->preview.reset();
+  m_impl->openStretch();
   m_impl->state = PlayerState::kPlaying;
   m_impl->settle();
+}
+
+Status Player::playUntil(double tau) {
+  Impl& m = *m_impl;
+  if (m.state == PlayerState::kEmpty || m.state == PlayerState::kHalted) {
+    return {ErrorCode::kRefused, "play: no motion is loaded, or it was halted"};
+  }
+  if (!std::isfinite(tau) || tau < 0 || tau > duration()) {
+    return {ErrorCode::kInvalidInput, "play: the time " + formatNumber(tau) + " is not within 0 ... " +
+                                          formatNumber(duration()) + " s"};
+  }
+  if (m.trajectory.sample(tau).velocities.cwiseAbs().maxCoeff() > kAtRest) {
+    return {ErrorCode::kInvalidInput,
+            "play: the path is not at rest at " + formatFixed(tau, 3) + " s; choose the end of a stage"};
+  }
+  const double rests = m.profile.restTau();
+  if (m.speed == 0 || (m.speed > 0 ? rests >= tau : rests <= tau)) {
+    return {ErrorCode::kRefused, "play: " + formatFixed(tau, 3) + " s is behind, or too near to stop there"};
+  }
+  m.preview.reset();
+  m.setStretch(m.speed > 0 ? internal::PathStretch{0, tau} : internal::PathStretch{tau, duration()});
+  m.state = PlayerState::kPlaying;
+  return {};
 }
 
 void Player::pause() {
@@ -288,6 +346,7 @@ Status Player::standAt(double tau) {
   if (!std::isfinite(tau) || tau < 0 || tau > duration()) {
     return {ErrorCode::kInvalidInput, "stand: the time " + formatNumber(tau) + " is not within 0 ... " + formatNumber(duration()) + " s"};
   }
+  m_impl->openStretch();
   m_impl->standAt(tau);
   m_impl->state = PlayerState::kPaused;
   return {};
@@ -295,6 +354,7 @@ Status Player::standAt(double tau) {
 
 void Player::halt() {
   if (m_impl->state == PlayerState::kEmpty) return;
+  m_impl->openStretch();
   m_impl->standAt(m_impl->current().tau);
   m_impl->state = PlayerState::kHalted;
 }
@@ -313,6 +373,7 @@ Status Player::resumeFrom(const Eigen::VectorXd& measured, double tolerance) {
                                    " off the path (limit " + formatNumber(tolerance) +
                                    "); plan again from here"};
   }
+  m_impl->openStretch();
   m_impl->standAt(place.tau);
   m_impl->state = PlayerState::kPaused;
   return {};
@@ -335,6 +396,7 @@ Horizon Player::tick(double now_s) {
     if (m.atRest()) m.standAt(m.current().tau);
     if (!m.atRest() || m.speed != 0) m.decide();
   }
+  if (m.state == PlayerState::kPausing) m.brakeSooner();
   if (m.atRest()) return {};
   m.profile.forgetBefore(m.now);
   return m.horizon();

@@ -32,7 +32,15 @@ class Player {
   void clear();
 
   void play();                           ///< Towards the end at the set speed (sign of speed decides the way).
-  void pause();                          ///< Decelerates along the path within the planned limits.
+  /// As play(), as far as `tau`: the arm rests there, kPaused (kDone and kReady at the ends as ever).
+  /// @returns kInvalidInput where the path itself is not at rest at tau, as between two stages it is;
+  /// kRefused when
+  ///   nothing is loaded, after a halt, at speed 0, or when tau lies behind, or nearer than the arm can come
+  ///   to rest.
+  Status playUntil(double tau);
+  /// Decelerates along the path within the planned limits, as soon as they allow: from the planned speed at
+  /// rest within 180 ms of the next tick, from twice that within horizon_s.
+  void pause();
   /// Wanted speed factor, -2 ... 2 (clamped); takes effect in motion.
   void setSpeed(double factor);
   /// Moves the cursor while not moving (preview only; never moves the robot).  @returns kRefused while playing.

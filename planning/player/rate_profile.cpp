@@ -29,11 +29,11 @@ double brakingWeight(double r, double left) {
 
 }  // namespace
 
-RateProfile::RateProfile(double length, double t, const RateState& state)
-    : m_length(length), m_knots{{t, state}} {}
+RateProfile::RateProfile(const PathStretch& stretch, double t, const RateState& state)
+    : m_stretch(stretch), m_knots{{t, state}} {}
 
 bool RateProfile::leavesPath(const RateState& state) const {
-  return (state.tau < 0 && state.r < 0) || (state.tau > m_length && state.r > 0);
+  return (state.tau < m_stretch.low && state.r < 0) || (state.tau > m_stretch.high && state.r > 0);
 }
 
 void RateProfile::append(double h, double u_end) {
@@ -50,7 +50,7 @@ void RateProfile::append(double h, double u_end) {
       (leavesPath(advance(start.state, jerk, middle)) ? high : low) = middle;
     }
     RateState end = advance(start.state, jerk, high);
-    end.tau = end.r < 0 ? 0 : m_length;
+    end.tau = end.r < 0 ? m_stretch.low : m_stretch.high;
     m_knots.push_back({start.t + high, end});
     m_met_end = true;
     return;
@@ -77,7 +77,7 @@ void RateProfile::appendBraking(double h, int pieces) {
 
 RateState RateProfile::restAtEnd() const {
   RateState rest;
-  rest.tau = std::clamp(m_knots.back().state.tau, 0.0, m_length);
+  rest.tau = std::clamp(m_knots.back().state.tau, m_stretch.low, m_stretch.high);
   return rest;
 }
 
@@ -97,7 +97,7 @@ RateState RateProfile::at(double t) const {
 }
 
 RateProfile RateProfile::upTo(double t) const {
-  RateProfile part(m_length, m_knots.front().t, m_knots.front().state);
+  RateProfile part(m_stretch, m_knots.front().t, m_knots.front().state);
   for (std::size_t i = 1; i < m_knots.size() && m_knots[i].t < t - 1e-6; ++i)
     part.m_knots.push_back(m_knots[i]);
   if (t > part.endTime()) part.m_knots.push_back({t, at(t)});

@@ -15,7 +15,12 @@ struct RateState {
   double u = 0;    ///< d r / dt [1/s]
 };
 
-/// u(t) is linear between knots; tau stays in [0, length].  Where tau meets an end of the path, the profile
+/// A stretch of the path between two places where the path itself is at rest.
+struct PathStretch {
+  double low = 0, high = 0;  ///< [s]
+};
+
+/// u(t) is linear between knots; tau stays in the stretch.  Where tau meets an end of it, the profile
 /// ends: the path itself is at rest there, so the joints are too, whatever r is.  Thread-compatible value.
 class RateProfile {
  public:
@@ -25,7 +30,10 @@ class RateProfile {
   };
 
   RateProfile() = default;
-  RateProfile(double length, double t, const RateState& state);
+  RateProfile(const PathStretch& stretch, double t, const RateState& state);
+
+  /// Another stretch for what is appended from now on.  @pre both hold all of the profile.
+  void setStretch(const PathStretch& stretch) { m_stretch = stretch; }
 
   /// Adds a piece of `h` seconds over which u goes to `u_end`; cut short where tau meets an end of the path.
   /// Nothing is added to a profile that has met one.
@@ -44,6 +52,8 @@ class RateProfile {
   RateState at(double t) const;
   RateState between(std::size_t piece, double s) const;  ///< s seconds into a piece.
   double endTime() const { return m_knots.back().t; }
+  /// Where it comes to rest.
+  double restTau() const { return restAtEnd().tau; }
   bool metEnd() const { return m_met_end; }
   const std::vector<Knot>& knots() const { return m_knots; }
 
@@ -51,7 +61,7 @@ class RateProfile {
   bool leavesPath(const RateState& state) const;
   RateState restAtEnd() const;
 
-  double m_length = 0;
+  PathStretch m_stretch;
   bool m_met_end = false;
   std::vector<Knot> m_knots{Knot{}};
 };

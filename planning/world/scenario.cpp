@@ -128,6 +128,7 @@ void readImperfections(FieldReader& file, Imperfections& result) {
   result.encoder_noise_deg = reader.number("encoder_noise_deg", result.encoder_noise_deg, 0, 1);
   result.latency_s = reader.number("latency_s", result.latency_s, 0, 1);
   result.image_noise = reader.number("image_noise", result.image_noise, 0, 50);
+  result.odometry_share = reader.number("odometry_share", result.odometry_share, 0, 0.2);
   reader.refuseUnknownKeys();
   file.adopt(reader.status());
 }
@@ -343,7 +344,7 @@ Result<Scenario> loadFile(const std::string& path) {
 
 }  // namespace
 
-Imperfections Imperfections::none() { return {0, 0, 0, 0, 0}; }
+Imperfections Imperfections::none() { return {0, 0, 0, 0, 0, 0}; }
 
 Pose ScenarioObject::onRoute(double time_s) const {
   double whole = 0;

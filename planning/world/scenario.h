@@ -45,6 +45,7 @@ struct Imperfections {
   double encoder_noise_deg = 0.002;      ///< 1 sigma of each reading.
   double latency_s = 0.02;               ///< From receiving a command to acting on it.
   double image_noise = 2;                ///< 1 sigma [grey levels].
+  double odometry_share = 0.01;          ///< Error of the odometry's scale, uniform up to +- this.
 
   static Imperfections none();           ///< All zero.
 };

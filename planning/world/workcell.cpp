@@ -32,11 +32,13 @@ class WorkcellReader {
     if (const Status status = readRobot(top); !status) return status.error();
     readArm(top);
     readGripper(top);
+    readBase(top);
     readPanTilts(top);
     readCameras(top);
     readBackend(top);
     readObjects(top);
     readPoses(top);
+    for (const auto& place : top.textsOr("templates")) m_cell.templates.push_back(absolute(place));
     if (auto speeds = top.sectionOr("speeds")) {
       m_cell.max_tool_speed = speeds->numberOr("max_tool_speed", m_cell.max_tool_speed, NumberRange::kPositive);
       m_cell.approach_speed = speeds->numberOr("approach_speed", m_cell.approach_speed, NumberRange::kPositive);
@@ -169,6 +171,21 @@ class WorkcellReader {
     m_cell.gripper = std::move(spec);
   }
 
+  void readBase(YamlSection& top) {
+    auto base = top.sectionOr("base");
+    if (!base || m_findings.error) return;
+    BaseLimits limits;
+    limits.max_speed = base->numberOr("max_speed", limits.max_speed, NumberRange::kPositive);
+    limits.max_turn = base->numberOr("max_turn", limits.max_turn, NumberRange::kPositive);
+    limits.max_acceleration =
+        base->numberOr("max_acceleration", limits.max_acceleration, NumberRange::kPositive);
+    limits.max_turn_acceleration =
+        base->numberOr("max_turn_acceleration", limits.max_turn_acceleration, NumberRange::kPositive);
+    limits.sideways = base->flagOr("sideways", false);
+    base->finish();
+    m_cell.base = limits;
+  }
+
   void readPanTilts(YamlSection& top) {
     for (auto& section : top.sections("pan_tilts")) {
       PanTiltSpec spec{section.text("name"), jointName(section, "pan_joint"), jointName(section, "tilt_joint")};
@@ -194,6 +211,7 @@ class WorkcellReader {
       spec.role = section.textOr("role", "");
       spec.sigma_px = section.numberOr("sigma_px", 0.5, NumberRange::kPositive);
       if (section.has("calibration")) spec.calibration = absolute(section.text("calibration"));
+      readLens(section, spec);
       section.finish();
       if (m_cell.camera(spec.name) != nullptr) section.refuse("name", "a name of its own");
       if (!spec.pan_tilt.empty() && !hasPanTilt(spec.pan_tilt)) section.refuse("pan_tilt", "one of pan_tilts");
@@ -204,6 +222,22 @@ class WorkcellReader {
       const std::string partner = section.textOr("stereo_partner", "");
       if (!partner.empty() && m_cell.camera(partner) == nullptr) section.refuse("stereo_partner", "one of cameras");
     }
+  }
+
+  void readLens(YamlSection& section, CameraSpec& spec) {
+    spec.zooms = section.flagOr("zoom", spec.role == "ptz");
+    if (section.has("picture_size")) {
+      const auto size = section.numbers("picture_size", 2, NumberRange::kPositive);
+      spec.width = static_cast<int>(size[0]);
+      spec.height = static_cast<int>(size[1]);
+    }
+    auto digital = section.sectionOr("digital_zoom");
+    if (!digital) return;
+    spec.digital_zoom.from = digital->number("from", NumberRange::kNotNegative);
+    spec.digital_zoom.factor = digital->number("factor", NumberRange::kPositive);
+    if (spec.digital_zoom.from >= 1) digital->refuse("from", "a setting below 1");
+    if (spec.digital_zoom.factor < 1) digital->refuse("factor", "an enlargement of at least 1");
+    digital->finish();
   }
 
   void warnAboutCalibration(const CameraSpec& spec) {

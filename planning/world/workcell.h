@@ -12,9 +12,11 @@
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/motion.h"
 #include "core/result.h"
 #include "planning/robot/robot_model.h"
+#include "vision/camera/camera_calibration.h"
 
 namespace longarm::planning {
 
@@ -39,6 +41,9 @@ struct CameraSpec {
   std::string stereo_partner;            ///< Empty, or the other camera of its head.
   std::string role;                      ///< "stereo_left", "stereo_right", "wrist", "drive", "reverse", "ptz"
   double sigma_px = 0.5;
+  bool zooms = false;                    ///< Zoom and focus can be commanded.
+  vision::DigitalZoom digital_zoom;
+  int width = 0, height = 0;             ///< Of its pictures, where the camera file does not say [px]; 0: unknown.
 };
 
 /// How a device kind reaches the robot.
@@ -56,10 +61,12 @@ struct Workcell {
   JointGroup arm;                        ///< Tip is the tool frame T (z out of the tool).
   MotionLimits arm_limits;               ///< In the order of the arm's joints; for planning and the gate.
   std::optional<GripperSpec> gripper;
+  std::optional<BaseLimits> base;  ///< A robot that drives; its root link moves with it.
   std::vector<PanTiltSpec> pan_tilts;
   std::vector<CameraSpec> cameras;
   BackendSpec backend;
   std::vector<WorldObject> objects;      ///< Fixed bodies the console knows of.
+  std::vector<std::string> templates;    ///< Absolute paths of object templates of one's own, files or folders.
   std::map<std::string, std::map<std::string, double>> poses;   ///< Canned poses: home, stow, ready ... (SRDF's too).
   double max_tool_speed = 0.25;          ///< Cartesian cap of planned motion [m/s].
   double approach_speed = 0.05;          ///< Last leg [m/s].

@@ -198,6 +198,20 @@ Status CalibrationController::apply(const CameraChange& change) {
   return kept ? use(change.camera, kept->id) : Status(kept.error());
 }
 
+Status CalibrationController::applyTable(const std::string& camera, const vision::ZoomFile& table) {
+  const auto* spec = m_plain ? m_plain->camera(camera) : nullptr;
+  if (spec == nullptr || !spec->zooms) return {ErrorCode::kInvalidInput, "Camera " + camera + " has no zoom: a table is of no use to it."};
+  CalibrationRecord record;
+  record.workcell = m_plain->name;
+  record.name = camera;
+  record.kind = "zoom";
+  record.note = std::to_string(table.cameras.front().nodes.size()) + " settings";
+  record.wall_time_s = wallTime_s();
+  record.observations = static_cast<int>(table.cameras.front().nodes.size());
+  const auto kept = m_library.add(record, table);
+  return kept ? use(camera, kept->id) : Status(kept.error());
+}
+
 Status CalibrationController::use(const std::string& camera, const std::string& id) {
   if (!m_plain || m_plain->camera(camera) == nullptr) return {ErrorCode::kNotFound, "The workcell has no camera \"" + camera + "\"."};
   if (const Status set = m_library.setInUse(m_plain->name, camera, id); !set) return set;

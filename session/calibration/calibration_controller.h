@@ -51,6 +51,8 @@ class CalibrationController final : public QObject {
 
   /// Keeps it in the library and uses it from now on; snapshots keep the camera they were taken with.
   Status apply(const CameraChange& change);
+  /// The same for the table of a zoom camera.  @returns kInvalidInput: a camera that has no zoom.
+  Status applyTable(const std::string& camera, const vision::ZoomFile& table);
   /// Uses a record of the library; empty id: the workcell's own file.
   Status use(const std::string& camera, const std::string& id);
   /// Keeps in the library where something stands and uses it from now on.  @returns kNotFound, or as CameraLibrary::add.

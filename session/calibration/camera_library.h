@@ -10,6 +10,7 @@
 #include "core/result.h"
 #include "session/calibration/placement.h"
 #include "vision/camera/camera_file.h"
+#include "vision/camera/zoom_camera.h"
 
 namespace longarm::session {
 
@@ -47,6 +48,9 @@ class CameraLibrary {
   /// @returns kInvalidInput or kInternal when the folder cannot be written.
   Result<CalibrationRecord> add(CalibrationRecord record, const vision::CameraFile& file, const std::string& raw = {},
                                 const std::string& raw_ending = {});
+  /// The same for a zoom camera's table.
+  Result<CalibrationRecord> add(CalibrationRecord record, const vision::ZoomFile& file);
+  /// The same for where something stands or is mounted.
   Result<CalibrationRecord> add(CalibrationRecord record, const Placement& placement, const std::string& raw = {},
                                 const std::string& raw_ending = {});
   /// Id of the calibration in use; empty: the workcell's own file.

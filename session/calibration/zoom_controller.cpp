@@ -116,13 +116,23 @@ void ZoomController::save(const QString& path) {
     Q_EMIT failed(why);
     return;
   }
-  vision::ZoomFile file;
-  file.headers = {{"SR_filename", path.toStdString()},
-                  {"SR_comment", "SR_cam_int: fx fy fxy u0 v0 k1 k2 p1 p2. SR_cam_ext: dx dy dz in metres and a rotation vector in radians, mapping the mount's frame into the camera's."}};
-  file.cameras = {m_table};
-  const Status written = vision::writeZoomFile(path.toStdString(), file);
+  const Status written = vision::writeZoomFile(path.toStdString(), file(path.toStdString()));
   if (written) Q_EMIT saved(path);
   else Q_EMIT failed(QString::fromStdString(written.error().message));
+}
+
+void ZoomController::use(const std::string& camera) {
+  const QString why = whyNotSave();
+  const Status used = why.isEmpty() ? m_calibration.applyTable(camera, file(camera + ".xml")) : Status(ErrorCode::kRefused, why.toStdString());
+  if (!used) Q_EMIT failed(QString::fromStdString(used.error().message));
+}
+
+vision::ZoomFile ZoomController::file(const std::string& name) const {
+  vision::ZoomFile file;
+  file.headers = {{"SR_filename", name},
+                  {"SR_comment", "SR_cam_int: fx fy fxy u0 v0 k1 k2 p1 p2. SR_cam_ext: dx dy dz in metres and a rotation vector in radians, mapping the mount's frame into the camera's."}};
+  file.cameras = {m_table};
+  return file;
 }
 
 std::vector<double> ZoomController::approach(double zoom) {

@@ -44,6 +44,8 @@ class ZoomController final : public QObject {
 
   QString whyNotSave() const;
   void save(const QString& path);
+  /// Keeps the table in the library; the camera uses it from now on at every zoom.
+  void use(const std::string& camera);
 
   /// Settings to command in turn so that play in the drive is always taken up from the same side.
   static std::vector<double> approach(double zoom);
@@ -56,6 +58,7 @@ class ZoomController final : public QObject {
  private:
   void take(vision::ZoomCamera table, std::vector<std::string> warnings);
   void judge();
+  vision::ZoomFile file(const std::string& name) const;
 
   CalibrationController& m_calibration;
   JobRunner& m_jobs;

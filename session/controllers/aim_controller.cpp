@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "core/text.h"
+#include "session/controllers/calibrated_camera.h"
+#include "session/controllers/framing.h"
 #include "session/controllers/snapshot_maker.h"
 
 namespace longarm::session {
@@ -17,106 +17,6 @@ constexpr int kTickMs = 50;
 constexpr double kAimDistance = 3.0;
 /// A key step adds to the last target rather than to the lagging joints for this long [s].
 constexpr double kTargetLife = 1.0;
-
-const planning::PanTiltSpec* findPanTilt(const planning::Workcell& workcell, const std::string& name) {
-  for (const auto& spec : workcell.pan_tilts) {
-    if (spec.name == name) return &spec;
-  }
-  return nullptr;
-}
-
-struct Axis {
-  int q_index = -1;
-  double lower = 0, upper = 0;
-  std::string name;
-};
-
-Result<Axis> axisOf(const planning::RobotModel& model, const std::string& joint) {
-  const auto index = model.jointIndex(joint);
-  if (!index) return index.error();
-  const planning::Joint& found = model.joints()[static_cast<std::size_t>(*index)];
-  if (found.q_index < 0) return {ErrorCode::kInvalidInput, "Joint " + joint + " does not move: it cannot aim a camera."};
-  return Axis{found.q_index, found.lower, found.upper, joint};
-}
-
-/// A camera on its pan-tilt: where it is and looks at any angles.
-class AimedCamera {
- public:
-  static Result<AimedCamera> make(const planning::Workcell& workcell, const planning::CameraSpec& camera,
-                                  const JointState& now) {
-    if (!workcell.model) return {ErrorCode::kNotFound, "The workcell has no robot."};
-    const planning::PanTiltSpec* spec = findPanTilt(workcell, camera.pan_tilt);
-    if (spec == nullptr) {
-      return {ErrorCode::kNotFound, "No pan-tilt aims camera " + camera.name + ". Choose a camera of the head."};
-    }
-    auto pan = axisOf(*workcell.model, spec->pan_joint);
-    if (!pan) return pan.error();
-    auto tilt = axisOf(*workcell.model, spec->tilt_joint);
-    if (!tilt) return tilt.error();
-    const auto link = workcell.model->linkIndex(camera.link);
-    if (!link) return link.error();
-    AimedCamera aimed;
-    aimed.m_model = workcell.model.get();
-    aimed.m_pan = *pan;
-    aimed.m_tilt = *tilt;
-    aimed.m_link = *link;
-    aimed.m_q = workcell.model->neutral();
-    workcell.model->assign(now, aimed.m_q);
-    return aimed;
-  }
-
-  PanTiltAngles now() const { return {m_q(m_pan.q_index), m_q(m_tilt.q_index)}; }
-  Pose pose(const PanTiltAngles& angles) const {
-    Eigen::VectorXd q = m_q;
-    q(m_pan.q_index) = angles.pan;
-    q(m_tilt.q_index) = angles.tilt;
-    return m_model->forward(q, m_link);
-  }
-  PanTiltAngles clamped(const PanTiltAngles& wanted) const {
-    return {std::clamp(wanted.pan, m_pan.lower, m_pan.upper), std::clamp(wanted.tilt, m_tilt.lower, m_tilt.upper)};
-  }
-  Status checkLimits(const PanTiltAngles& wanted) const {
-    for (const auto& [axis, angle] : {std::pair(&m_pan, wanted.pan), std::pair(&m_tilt, wanted.tilt)}) {
-      if (angle >= axis->lower && angle <= axis->upper) continue;
-      constexpr double kDegrees = 57.29577951308232;
-      return {ErrorCode::kOutOfLimits, axis->name + " would have to go to " + formatFixed(angle * kDegrees, 1) +
-                                           " deg, its limits are " + formatFixed(axis->lower * kDegrees, 1) + " to " +
-                                           formatFixed(axis->upper * kDegrees, 1) + " deg."};
-    }
-    return {};
-  }
-
- private:
-  const planning::RobotModel* m_model = nullptr;
-  Axis m_pan, m_tilt;
-  int m_link = -1;
-  Eigen::VectorXd m_q;
-};
-
-/// Newton on the two picture coordinates of a fixed point of the world.
-Result<PanTiltAngles> solveAim(const AimedCamera& camera, const Eigen::Vector3d& p_R, const Eigen::Vector2d& centre) {
-  const auto error = [&](const PanTiltAngles& angles) -> Eigen::Vector2d {
-    const Eigen::Vector3d p = camera.pose(angles).inverse() * p_R;
-    // Angles rather than ratios: they grow evenly and never blow up.
-    return {std::atan2(p.x(), p.z()) - std::atan(centre.x()),
-            std::atan2(p.y(), std::hypot(p.x(), p.z())) - std::atan2(centre.y(), std::hypot(1.0, centre.x()))};
-  };
-  PanTiltAngles angles = camera.now();
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector2d e = error(angles);
-    if (e.norm() < 1e-9) return angles;
-    constexpr double h = 1e-6;
-    Eigen::Matrix2d J;
-    J.col(0) = (error({angles.pan + h, angles.tilt}) - e) / h;
-    J.col(1) = (error({angles.pan, angles.tilt + h}) - e) / h;
-    if (std::abs(J.determinant()) < 1e-6) break;
-    Eigen::Vector2d step = -J.inverse() * e;
-    if (step.norm() > 0.5) step *= 0.5 / step.norm();
-    angles.pan += step.x();
-    angles.tilt += step.y();
-  }
-  return {ErrorCode::kDegenerate, "The pan-tilt cannot turn that pixel to the middle: it looks along its own pan axis."};
-}
 
 }  // namespace
 
@@ -133,7 +33,7 @@ Result<PanTiltAngles> anglesToCentre(const planning::Workcell& workcell, const v
   const auto centre = camera_model.normalisedOfPixel(middle);
   if (!centre) return centre.error();
   const Eigen::Vector3d target = aimed->pose(aimed->now()) * Eigen::Vector3d(kAimDistance * *ray);
-  const auto angles = solveAim(*aimed, target, *centre);
+  const auto angles = aimed->lookingAt(target, *centre);
   if (!angles) return angles.error();
   if (clamped != nullptr) *clamped = aimed->clamped(*angles);
   if (const Status fits = aimed->checkLimits(*angles); !fits) return fits.error();
@@ -198,11 +98,22 @@ void AimController::tick() {
   const double now_s = m_feed->now_s();
   const double dt = std::clamp(now_s - m_last_tick_s, 0.0, 0.2);
   m_last_tick_s = now_s;
-  const Status moved = turnBy(m_right * m_max_rate * dt, m_up * m_max_rate * dt);
+  const double rate = m_max_rate * fineness();
+  const Status moved = turnBy(m_right * rate * dt, m_up * rate * dt);
   if (!moved) {
     m_timer.stop();
     Q_EMIT failed(QString::fromStdString(moved.error().message));
   }
+}
+
+// Zoomed in, the picture would fly past: turns are as much smaller as things are larger.
+double AimController::fineness() const {
+  const planning::CameraSpec* camera = cameraOfPanTilt();
+  const auto zoom = m_feed->zoomAt(camera->name, m_feed->now_s());
+  const auto calibration = calibrationOf(*camera);
+  if (!zoom || !*zoom || !calibration) return 1;
+  const auto larger = (*calibration)->magnification(**zoom);
+  return larger ? 1 / std::max(1.0, *larger) : 1;
 }
 
 void AimController::step(double right, double up) {
@@ -210,7 +121,8 @@ void AimController::step(double right, double up) {
     Q_EMIT failed(reason);
     return;
   }
-  const Status moved = turnBy(right, up);
+  const double fine = fineness();
+  const Status moved = turnBy(fine * right, fine * up);
   if (!moved) Q_EMIT failed(QString::fromStdString(moved.error().message));
 }
 
@@ -232,25 +144,15 @@ Status AimController::turnBy(double right, double up) {
 }
 
 void AimController::aimAt(const QString& camera, const Eigen::Vector2d& pixel) {
-  if (m_feed == nullptr || !m_workcell) {
-    Q_EMIT failed(whyNot());
-    return;
-  }
-  const auto state = m_feed->jointState();
   const std::string name = camera.toStdString();
-  const planning::CameraSpec* spec = m_workcell->camera(name);
-  if (!state || spec == nullptr) {
-    Q_EMIT failed(!state ? tr("The robot's joints are not known yet.")
-                         : tr("The workcell has no camera \"%1\".").arg(camera));
-    return;
-  }
-  const auto view = cameraView(*m_workcell, name, *state);
+  const auto view = viewNow(name);
   if (!view) {
     Q_EMIT failed(QString::fromStdString(view.error().message));
     return;
   }
+  const planning::CameraSpec* spec = m_workcell->camera(name);
   PanTiltAngles reachable;
-  const auto angles = anglesToCentre(*m_workcell, view->camera, name, pixel, *state, &reachable);
+  const auto angles = anglesToCentre(*m_workcell, view->camera, name, pixel, *m_feed->jointState(), &reachable);
   if (!angles && angles.error().code != ErrorCode::kOutOfLimits) {
     Q_EMIT failed(QString::fromStdString(angles.error().message));
     return;
@@ -261,13 +163,48 @@ void AimController::aimAt(const QString& camera, const Eigen::Vector2d& pixel) {
   if (!sent) Q_EMIT failed(QString::fromStdString(sent.error().message));
 }
 
+void AimController::frameRegion(const QString& camera, const Eigen::Vector2d& corner, const Eigen::Vector2d& opposite) {
+  const auto view = viewNow(camera.toStdString());
+  const auto region = view ? regionAt(*view, corner, opposite, kAimDistance) : Result<std::vector<Eigen::Vector3d>>(view.error());
+  if (!region) {
+    Q_EMIT failed(QString::fromStdString(region.error().message));
+    return;
+  }
+  framePoints(camera, *region);
+}
+
+Result<vision::View> AimController::viewNow(const std::string& camera) const {
+  if (m_feed == nullptr || !m_workcell) return Error{ErrorCode::kDisconnected, whyNot().toStdString()};
+  const auto state = m_feed->jointState();
+  if (!state) return Error{ErrorCode::kStale, "The robot's joints are not known yet."};
+  const auto zoom = m_feed->zoomAt(camera, m_feed->now_s());
+  return zoom ? cameraView(*m_workcell, camera, *state, *zoom) : Result<vision::View>(zoom.error());
+}
+
+void AimController::framePoints(const QString& camera, const std::vector<Eigen::Vector3d>& points_W) {
+  const std::string name = camera.toStdString();
+  const auto view = viewNow(name);
+  const planning::CameraSpec* spec = m_workcell ? m_workcell->camera(name) : nullptr;
+  const auto framed = view ? frame(*m_workcell, *spec, points_W, *m_feed->jointState(), view->zoom, {})
+                           : Result<Framing>(view.error());
+  if (!framed) {
+    Q_EMIT failed(QString::fromStdString(framed.error().message));
+    return;
+  }
+  m_pan_tilt = spec->pan_tilt;
+  Status sent = send(framed->angles);
+  if (sent && framed->zoom) sent = m_feed->setZoom(name, *framed->zoom);
+  if (!sent) Q_EMIT failed(QString::fromStdString(sent.error().message));
+  if (!framed->shortfall.empty()) Q_EMIT failed(QString::fromStdString(framed->shortfall));
+}
+
 Status AimController::send(const PanTiltAngles& wanted) {
   const Status sent = m_feed->movePanTilt(m_pan_tilt, wanted.pan, wanted.tilt);
   if (!sent) return sent;
   m_target = wanted;
   m_has_target = true;
   m_sent_s = m_feed->now_s();
-  Q_EMIT aimed();
+  Q_EMIT aimed(QString::fromStdString(m_pan_tilt));
   return {};
 }
 

@@ -5,20 +5,19 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <QObject>
 #include <QString>
 #include <QTimer>
 
 #include "planning/world/workcell.h"
+#include "session/controllers/aimed_camera.h"
 #include "session/controllers/robot_feed.h"
 #include "vision/camera/camera_model.h"
+#include "vision/snapshot/view.h"
 
 namespace longarm::session {
-
-struct PanTiltAngles {
-  double pan = 0, tilt = 0;                ///< [rad]
-};
 
 /// Angles that bring a pixel of a camera to the middle of its picture, from the joints now.
 /// @returns kNotFound (no such camera or no pan-tilt aims it), kDegenerate (the pixel has no ray), kOutOfLimits
@@ -49,14 +48,21 @@ class AimController final : public QObject {
   void step(double right, double up);
   /// Brings this raw pixel of a live picture to its middle; goes as far as the limits allow and says so.
   void aimAt(const QString& camera, const Eigen::Vector2d& pixel);
+  /// Chooses pan, tilt and, where the camera has it, zoom so that what this rectangle of the live picture shows fills the
+  /// picture; raw pixels of two opposite corners.  Without a zoom it is brought to the middle.
+  void frameRegion(const QString& camera, const Eigen::Vector2d& corner, const Eigen::Vector2d& opposite);
+  /// The same for points of the robot's root frame.
+  void framePoints(const QString& camera, const std::vector<Eigen::Vector3d>& points_W);
   void setMaxRate(double rate) { m_max_rate = rate; }  ///< At full deflection [rad/s].
 
  Q_SIGNALS:
-  void aimed();                                        ///< A command went out.
+  void aimed(const QString& pan_tilt);                 ///< A command went out.
   void failed(const QString& sentence);
 
  private:
   void tick();
+  double fineness() const;
+  Result<vision::View> viewNow(const std::string& camera) const;
   Status turnBy(double right, double up);
   Status send(const PanTiltAngles& wanted);
   const planning::CameraSpec* cameraOfPanTilt() const;

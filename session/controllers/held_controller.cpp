@@ -29,6 +29,14 @@ HeldBody attached(const planning::Workcell& workcell, planning::WorldObject body
   return held;
 }
 
+// Where a template stands when one of its parts is there.  What hangs on a hinge or runs on a slide takes nothing with it.
+Pose frameOf(const WorldItem& item, const std::string& body, const Pose& X_WP) {
+  for (const auto& part : item.parts) {
+    if (item.name + "." + part.name == body && !part.moves) return X_WP * part.X_TP.inverse();
+  }
+  return item.X_WO;
+}
+
 }  // namespace
 
 planning::WorldObject HeldBody::at(const planning::Workcell& workcell, const Eigen::VectorXd& q) const {
@@ -78,7 +86,8 @@ std::optional<HeldBody> HeldController::find(const Eigen::VectorXd& q) const {
 std::optional<HeldBody> HeldController::fromPlan(const Eigen::VectorXd& q) const {
   const auto& record = m_document.plan();
   const auto& workcell = *m_document.workcell();
-  if (!record || !record->plan.ok() || !record->plan.grasped) return std::nullopt;
+  // The step of a template takes one of its bodies, which the fingers tell.
+  if (!record || !record->plan.ok() || !record->plan.grasped || !record->feature.valid()) return std::nullopt;
   const Eigen::VectorXd arm = planning::groupPositions(*workcell.model, workcell.arm, q);
   const Eigen::VectorXd& end = record->plan.trajectory.points.back().positions;
   if (end.size() != arm.size() || (end - arm).cwiseAbs().maxCoeff() > kAtEnd) return std::nullopt;
@@ -122,7 +131,8 @@ void HeldController::putDown(const Eigen::VectorXd& q) {
   const WorldItem* item = held.item.valid() ? m_document.worldItem(held.item) : nullptr;
   if (item != nullptr && item->kind != WorldKind::kPoints) {
     WorldItem after = *item;
-    after.X_WO = held.at(*m_document.workcell(), q).X_WO;
+    const Pose X_WO = held.at(*m_document.workcell(), q).X_WO;
+    after.X_WO = item->kind == WorldKind::kTemplate ? frameOf(*item, held.body.name, X_WO) : X_WO;
     const bool moved = (after.X_WO.translation() - item->X_WO.translation()).norm() > kMoved_m ||
                        angleBetween(after.X_WO.linear(), item->X_WO.linear()) > kTurned;
     const Status done = moved ? m_world.edit(after) : Status();

@@ -46,7 +46,18 @@ void PlanController::rebuildMacros() {
   cancel();
   m_macros.reset();
   if (!m_document.workcell()) return;
-  m_macros = std::make_shared<const MacroList>(planning::makeMacros(*m_document.workcell()));
+  MacroList all = planning::makeMacros(*m_document.workcell());
+  for (const auto& motion : m_recorded) {
+    if (planning::findMacro(all, planning::macroName(motion)) == nullptr)
+      all.push_back(planning::makeRecordedMotion(motion));
+  }
+  m_macros = std::make_shared<const MacroList>(std::move(all));
+}
+
+void PlanController::setRecorded(std::vector<planning::RecordedMotion> motions) {
+  m_recorded = std::move(motions);
+  rebuildMacros();
+  Q_EMIT macrosChanged();
 }
 
 QString PlanController::whyNot(const planning::MacroInfo& info) const {
@@ -62,6 +73,10 @@ QString PlanController::whyNot(const planning::MacroInfo& info) const {
     }
     const Measurement& measured = m_document.measurement(selected);
     if (!measured.feature) return QString::fromStdString(measured.reason);
+    if (measured.stale)
+      return tr("'%1' is stale: the base was driven since its pictures were taken. Re-register it, or mark "
+                "it in new pictures.")
+          .arg(QString::fromStdString(item->name));
     const std::string& root = rootFrame(*workcell);
     if (measured.feature->parent != root) {
       return tr("'%1' is measured in frame %2, the robot stands in %3. Measure it in pictures of the robot's cameras.")
@@ -160,6 +175,12 @@ FeatureId PlanController::targetOf(const QString& name) const {
 }
 
 std::optional<planning::PlanContext> PlanController::contextOf(const QString& name) const {
+  auto context = contextWithout(targetOf(name));
+  if (context) context->arguments = arguments(name);
+  return context;
+}
+
+std::optional<planning::PlanContext> PlanController::contextWithout(FeatureId target) const {
   const auto workcell = m_document.workcell();
   const auto joints = m_joints ? m_joints() : nullptr;
   if (!workcell || !joints) return std::nullopt;
@@ -168,24 +189,58 @@ std::optional<planning::PlanContext> PlanController::contextOf(const QString& na
   context.start = workcell->model->neutral();
   workcell->model->assign(*joints, context.start);
   if (m_held == nullptr) {
-    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), targetOf(name));
+    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), target);
   } else {
-    context.objects = m_held->obstacles(targetOf(name));
+    context.objects = m_held->obstacles(target);
   }
   if (m_held != nullptr && m_held->held()) {
     context.objects.push_back(m_held->held()->at(*workcell, context.start));
     context.held = {m_held->held()->body.name};
   }
-  context.arguments = arguments(name);
   context.seed = m_seed;
   context.budget_s = m_budget_s;
   return context;
 }
 
 void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
-  const auto workcell = m_document.workcell();
   planning::PlanContext context = *contextOf(QString::fromStdString(info.name));
   context.avoid = avoid;
+  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world(), {}};
+  if (info.takes) request.feature = *m_document.selectedFeature();
+  run(macro, std::move(context), std::move(request));
+}
+
+Status PlanController::planGiven(const QString& name, GivenFeature given) {
+  const planning::Macro* macro = this->macro(name);
+  if (macro == nullptr) return {ErrorCode::kNotFound, "There is no macro \"" + name.toStdString() + "\" for this robot."};
+  const planning::MacroInfo info = macro->info();
+  if (info.takes != given.feature.kind) {
+    return {ErrorCode::kInvalidInput, "Macro " + info.name + " does not take a " + vision::toString(given.feature.kind) + "."};
+  }
+  if (const auto good = planning::MacroArguments::from(info, given.arguments); !good) return good.error();
+  auto context = contextWithout({});
+  if (!context) return {ErrorCode::kRefused, "The robot's joints are not known yet."};
+  const std::string& root = rootFrame(*m_document.workcell());
+  if (given.feature.parent != root) {
+    return {ErrorCode::kRefused, "'" + given.feature.name + "' stands in frame " + given.feature.parent + ", the robot in " + root + "."};
+  }
+  cancel();
+  context->arguments = given.arguments;
+  if (given.carried.valid()) {
+    context->objects = obstaclesOf(m_document.world(), root, {}, given.carried);
+    context->held.clear();
+  }
+  Request request{++m_generation, info.name, {}, given.feature, {}, m_document.world(), std::move(given)};
+  run(*macro, std::move(*context), std::move(request));
+  return {};
+}
+
+void PlanController::acceptWorld() {
+  if (m_planned) m_planned->world = m_document.world();
+}
+
+void PlanController::run(const planning::Macro& macro, planning::PlanContext context, Request request) {
+  const auto workcell = m_document.workcell();
   m_cancel = CancelToken();
   context.cancel = m_cancel;
   m_live = std::make_shared<Progress>();
@@ -194,11 +249,11 @@ void PlanController::start(const planning::Macro& macro, const planning::MacroIn
     live->fraction = fraction;
     live->text = text;
   };
-  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world()};
-  if (info.takes) request.feature = *m_document.selectedFeature();
+  request.base = m_document.base();
+  request.workcell = workcell;
   m_progress = 0;
   m_progress_text.clear();
-  m_planning = QString::fromStdString(info.name);
+  m_planning = QString::fromStdString(request.macro);
   setState(State::kPlanning);
   m_timer.start();
   // The job keeps workcell and macros alive: a new workcell may be loaded meanwhile.
@@ -246,12 +301,14 @@ void PlanController::cancel() {
 
 Status PlanController::replan() {
   if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan to plan again. Choose a macro."};
+  if (m_planned && m_planned->given) return planGiven(QString::fromStdString(m_document.plan()->macro), *m_planned->given);
   if (const Status selected = selectPlanned(); !selected) return selected;
   return plan(QString::fromStdString(m_document.plan()->macro));
 }
 
 QString PlanController::whyNotOtherWay() const {
   if (!m_document.plan() || !m_document.plan()->plan.ok() || !m_planned) return tr("There is no plan.");
+  if (m_planned->given) return tr("The step of a template has one way: end its action and use the macro itself.");
   if (m_document.plan()->plan.entry.size() == 0) return tr("This motion begins where the arm stands: there is one way.");
   return {};
 }
@@ -284,7 +341,7 @@ void PlanController::discard() {
 }
 
 Status PlanController::checkFeature() const {
-  if (!m_planned || !m_planned->feature) return {};
+  if (!m_planned || !m_planned->feature || m_planned->given) return {};
   const FeatureId id = m_planned->item;
   const SketchItem* item = m_document.item(id);
   if (item == nullptr) return {ErrorCode::kStale, "The feature the plan was made for was deleted. Plan again."};
@@ -297,10 +354,33 @@ Status PlanController::checkFeature() const {
   return {ErrorCode::kStale, "'" + item->name + "' was moved since the plan was made. Plan again."};
 }
 
+Status PlanController::checkPlace() const {
+  if (!m_planned) return {};
+  if (m_planned->workcell != m_document.workcell()) {
+    return {ErrorCode::kStale,
+            "The calibration or the workcell was changed since the plan was made. Plan again."};
+  }
+  const auto& now = m_document.base();
+  if (!now || !m_planned->base || samePlace(*now, *m_planned->base)) return {};
+  const BaseShift shift = shiftBetween(*now, *m_planned->base);
+  return {ErrorCode::kStale, "The base has moved by " + formatFixed(shift.way * 1000, 0) + " mm and " +
+                                 formatFixed(shift.turn * 180 / M_PI, 1) +
+                                 " deg since the plan was made (10 mm and 0.5 deg are allowed). Plan again."};
+}
+
+Status PlanController::checkSurroundings() const {
+  if (const Status place = checkPlace(); !place) return place;
+  if (!m_planned || !m_planned->item.valid() || m_document.item(m_planned->item) == nullptr) return {};
+  if (!m_document.measurement(m_planned->item).stale) return {};
+  return {ErrorCode::kStale,
+          "The feature of the plan is stale: the base was driven since its pictures were taken."};
+}
+
 Status PlanController::checkFresh(const JointState& now, double tolerance) const {
   if (!m_document.plan()) return {ErrorCode::kRefused, "There is no plan. Choose a macro."};
   const planning::Plan& plan = m_document.plan()->plan;
   if (!plan.ok()) return {ErrorCode::kRefused, "The plan failed: " + plan.reason};
+  if (const Status around = checkSurroundings(); !around) return around;
   if (const Status feature = checkFeature(); !feature) return feature;
   if (m_planned && m_planned->world != m_document.world()) {
     return {ErrorCode::kStale, "The sketched world was changed since the plan was made. Plan again."};

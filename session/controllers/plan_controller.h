@@ -15,6 +15,7 @@
 
 #include "core/cancel.h"
 #include "planning/macros/macro.h"
+#include "planning/macros/recorded_motion.h"
 #include "session/controllers/held_controller.h"
 #include "session/controllers/job_runner.h"
 #include "session/document/document.h"
@@ -36,6 +37,12 @@ struct MacroRow {
 /// Values of macros' parameters, by macro and parameter, where they differ from the defaults.
 using MacroSettings = std::map<std::string, std::map<std::string, double>>;
 
+/// What a template hands to its macro.
+struct GivenFeature {
+  vision::Feature feature;
+  std::map<std::string, double> arguments;
+  WorldItemId carried;                     ///< Its moving parts go with the tool; may be invalid.
+};
 using MacroList = std::vector<std::unique_ptr<planning::Macro>>;
 
 /// GUI thread only.  A finished plan, good or bad, becomes Document::plan().
@@ -55,6 +62,9 @@ class PlanController final : public QObject {
   void setHeld(const HeldController* held) { m_held = held; }
   void setSeed(unsigned seed) { m_seed = seed; }
   void setBudget(double seconds) { m_budget_s = seconds; }
+
+  /// Motions to list beside the canned ones.
+  void setRecorded(std::vector<planning::RecordedMotion> motions);
 
   /// What the operator has set, for whatever workcell; what does not fit this one's macros is not used.
   const MacroSettings& settings() const { return m_settings; }
@@ -80,6 +90,10 @@ class PlanController final : public QObject {
   std::vector<MacroRow> macros() const;
   /// Starts planning; what was under way is cancelled and its result dropped.  @returns kRefused with the reason.
   Status plan(const QString& macro);
+  /// Plans a macro for a feature that is not of the sketch, with these arguments and no others, whatever is selected.
+  Status planGiven(const QString& macro, GivenFeature given);
+  /// The sketched world was changed as the motion of the plan changes the real one: the plan stays fresh.
+  void acceptWorld();
   void cancel();
   /// Plans the same macro for the same feature from the joints now.
   Status replan();
@@ -89,9 +103,13 @@ class PlanController final : public QObject {
   QString whyNotOtherWay() const;                      ///< Empty when there is a plan to find another way than.
   void discard();                                      ///< Clears the plan.
 
-  /// Whether the plan may be played from these joints: there is one, it is ok, its feature is as it was, and its
-  /// start lies within `tolerance` [rad or m] of them.  The message names the joint, the difference, the limit.
+  /// Whether the plan may be played from these joints: there is one, it is ok, its feature, the sketched
+  /// world and the calibration are as they were, the base stands where it stood (10 mm, 0.5 deg), and its
+  /// start lies within `tolerance` [rad or m] of them.  The message names what changed, by how much, the
+  /// limit.
   Status checkFresh(const JointState& now, double tolerance = 0.01) const;
+  /// The part of checkFresh() that also holds for a motion under way.
+  Status checkSurroundings() const;
 
  Q_SIGNALS:
   void macrosChanged();
@@ -111,6 +129,9 @@ class PlanController final : public QObject {
     std::optional<vision::Feature> feature;
     std::vector<Eigen::VectorXd> avoid;
     std::vector<WorldItem> world;
+    std::optional<GivenFeature> given;     ///< Instead of a feature of the sketch.
+    std::optional<BaseState> base;
+    std::shared_ptr<const planning::Workcell> workcell;
   };
 
   void rebuildMacros();
@@ -118,17 +139,21 @@ class PlanController final : public QObject {
   Status plan(const QString& macro, std::vector<Eigen::VectorXd> avoid);
   FeatureId targetOf(const QString& macro) const;
   void start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid);
+  std::optional<planning::PlanContext> contextWithout(FeatureId target) const;
+  void run(const planning::Macro& macro, planning::PlanContext context, Request request);
   Status selectPlanned();
   void judge(const planning::MacroInfo& info, MacroRow& row) const;
   const planning::Macro* macro(const QString& name) const;
   void deliver(const Request& request, Result<planning::Plan> result);
   Status checkFeature() const;
+  Status checkPlace() const;
   void pollProgress();
   void setState(State state);
 
   Document& m_document;
   JobRunner& m_jobs;
   std::shared_ptr<const MacroList> m_macros;
+  std::vector<planning::RecordedMotion> m_recorded;
   std::function<std::shared_ptr<const JointState>()> m_joints;
   const HeldController* m_held = nullptr;
   State m_state = State::kIdle;

@@ -16,10 +16,13 @@ constexpr double kSlowest = 0.05;          // A wanted factor below this would l
 bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || state == PlayerState::kPausing; }
 
 bool same(const PlayState& a, const PlayState& b) {
-  return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing && a.can_play == b.can_play &&
-         a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub && a.stale == b.stale && a.ask == b.ask && a.correcting == b.correcting && a.why_not_correct == b.why_not_correct &&
-         a.why_not_play == b.why_not_play && a.why_not_back_up == b.why_not_back_up && a.cursor_s == b.cursor_s &&
-         a.duration_s == b.duration_s && a.speed == b.speed && a.rate == b.rate;
+  return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing &&
+         a.can_play == b.can_play && a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub &&
+         a.stale == b.stale && a.ask == b.ask && a.correcting == b.correcting && a.only_held == b.only_held &&
+         a.halted == b.halted && a.halt_reason == b.halt_reason && a.why_not_stage == b.why_not_stage &&
+         a.why_not_stage_back == b.why_not_stage_back && a.why_not_correct == b.why_not_correct &&
+         a.why_not_play == b.why_not_play && a.why_not_back_up == b.why_not_back_up &&
+         a.cursor_s == b.cursor_s && a.duration_s == b.duration_s && a.speed == b.speed && a.rate == b.rate;
 }
 
 }  // namespace
@@ -91,6 +94,11 @@ void PlayController::checkPlan(PlayState& next) const {
     next.why_not_play = m_off_path;
     return;
   }
+  if (const Status around = m_plans.checkSurroundings(); next.loaded && !around) {
+    next.stale = true;
+    next.why_not_play = QString::fromStdString(around.error().message);
+    return;
+  }
   const auto joints = m_runtime != nullptr ? m_runtime->jointState() : nullptr;
   if (!joints || next.loaded) return;
   const Status fresh = m_plans.checkFresh(*joints);
@@ -104,6 +112,7 @@ void PlayController::rebuild() {
   const planning::Plan* shown = plan();
   next.speed = m_speed;
   next.has_plan = shown != nullptr;
+  next.only_held = m_only_held;
   next.loaded = shown != nullptr && m_loaded.valid() && m_document.plan()->id == m_loaded;
   next.playing = isMoving(m_status.player) && m_loaded.valid();
   next.correcting = !m_nudges.empty() || m_planning_correction || m_correction.has_value();
@@ -120,12 +129,25 @@ void PlayController::rebuild() {
     }
     if (next.why_not_play.isEmpty()) next.why_not_play = whyNotMove();
     if (next.why_not_play.isEmpty() && m_planning_correction) next.why_not_play = tr("The correction is being planned.");
-    next.why_not_back_up = !m_off_path.isEmpty() ? m_off_path : next.loaded ? whyNotMove() : tr("The arm stands at the start of this motion: nothing to back up.");
+    next.why_not_back_up = !m_off_path.isEmpty()       ? m_off_path
+                           : next.loaded && next.stale ? next.why_not_play
+                           : next.loaded
+                               ? whyNotMove()
+                               : tr("The arm stands at the start of this motion: nothing to back up.");
     if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
       next.why_not_play = tr("The motion is done. Back up, or plan the next one.");
     }
+    next.halted = next.loaded && m_status.player == PlayerState::kHalted;
+    if (next.halted) next.halt_reason = QString::fromStdString(m_status.notice);
+    next.why_not_stage = next.why_not_play;
+    if (next.why_not_stage.isEmpty() && !nextBorder(1))
+      next.why_not_stage = tr("There is no later stage on this motion.");
+    next.why_not_stage_back = next.why_not_back_up;
+    if (next.why_not_stage_back.isEmpty() && !nextBorder(-1))
+      next.why_not_stage_back = tr("The arm stands at the start of this motion: nothing to back up.");
   } else {
-    next.why_not_play = next.why_not_back_up = tr("There is no plan. Choose a motion first.");
+    next.why_not_play = next.why_not_back_up = next.why_not_stage = next.why_not_stage_back =
+        tr("There is no plan. Choose a motion first.");
   }
   next.can_play = next.why_not_play.isEmpty();
   next.can_back_up = next.why_not_back_up.isEmpty();
@@ -144,7 +166,37 @@ Status PlayController::load() {
   return {};
 }
 
-void PlayController::move(double direction) {
+// The next end of a stage that way which the arm can still come to rest at; it needs a horizon for that.
+std::optional<double> PlayController::nextBorder(double direction) const {
+  if (plan() == nullptr) return std::nullopt;
+  const bool loaded = m_loaded.valid() && m_document.plan()->id == m_loaded;
+  constexpr double kHorizon_s = 0.32;
+  const double needs = std::max(kAtEnd_s, kHorizon_s * std::abs(m_status.rate));
+  const double here = loaded ? m_status.arm_cursor : 0;
+  std::optional<double> next;
+  for (const auto& stage : plan()->stages) {
+    const double border = direction > 0 ? stage.end_s : stage.start_s;
+    if (direction > 0 && border > here + needs && !next) next = border;
+    if (direction < 0 && border < here - needs) next = border;
+  }
+  return next;
+}
+
+void PlayController::playStage() { move(1, nextBorder(1)); }
+void PlayController::backUpStage() { move(-1, nextBorder(-1)); }
+
+void PlayController::setOnlyHeld(bool on) {
+  if (m_only_held == on) return;
+  m_only_held = on;
+  if (m_runtime != nullptr && isMoving(m_status.player)) pause();
+  rebuild();
+}
+
+void PlayController::keepRunning() {
+  if (m_runtime != nullptr) m_runtime->keepRunning();
+}
+
+void PlayController::move(double direction, std::optional<double> until_s) {
   const QString& why = direction > 0 ? m_state.why_not_play : m_state.why_not_back_up;
   if (!why.isEmpty()) {
     Q_EMIT failed(why);
@@ -156,7 +208,7 @@ void PlayController::move(double direction) {
   }
   const double size = std::abs(m_speed) < kSlowest ? 1.0 : std::abs(m_speed);
   setSpeed(direction * size);
-  const Status played = m_runtime->play();
+  const Status played = m_runtime->play({until_s, m_only_held});
   // The arm was stopped beside the path, by its own watchdog or by hand: only a new plan starts where it is.
   if (!played && played.error().code == ErrorCode::kStale) m_off_path = QString::fromStdString(played.error().message);
   if (!played) Q_EMIT failed(QString::fromStdString(played.error().message));
@@ -226,12 +278,16 @@ void PlayController::correctNext() {
   m_planning_correction = true;
   m_jobs.run<planning::CorrectedPlan>(
       this,
-      [workcell, context = *context, plan = *plan(), tau = m_status.cursor, nudge] { return planning::correctPlan(context, plan, tau, nudge); },
+      [workcell, context = *context, plan = *plan(), tau = m_status.arm_cursor, nudge] {
+        return planning::correctPlan(context, plan, tau, nudge);
+      },
       [this, id = m_document.plan()->id](Result<planning::CorrectedPlan> corrected) {
         m_planning_correction = false;
         const bool same = m_document.plan() && m_document.plan()->id == id && m_loaded == id;
-        if (same) takeCorrection(std::move(corrected));
-        else dropCorrections();
+        if (same)
+          takeCorrection(std::move(corrected));
+        else
+          dropCorrections();
         rebuild();
       });
 }
@@ -273,7 +329,8 @@ void PlayController::finishCorrection() {
   }
   m_status = m_runtime->status();
   const bool more = done.reached_s < done.plan.trajectory.duration() - kAtEnd_s;
-  if (m_nudges.empty() && std::exchange(m_resume, false) && more) play();
+  // With hold to run the hand is on the correction, not on Play.
+  if (m_nudges.empty() && std::exchange(m_resume, false) && more && !m_only_held) play();
 }
 
 void PlayController::dropCorrections() {

@@ -22,10 +22,14 @@ struct PlayState {
   bool playing = false;                    ///< The arm moves along it, or slows down on it.
   bool can_play = false, can_back_up = false;
   bool can_scrub = false;
+  bool only_held = false;                  ///< Hold to run: the motion pauses when keepRunning() ends.
+  bool halted = false;                     ///< A stop or fault ended the motion on its path.
+  QString halt_reason;                     ///< Why, where something else than the operator did.
   bool correcting = false;                 ///< A correction is planned or carried out.
   bool ask = false;                        ///< The feature is not known as well as the motion needs it: accept it first.
   bool stale = false;                      ///< The robot or the feature is not where the plan was made for: plan again.
   QString why_not_play, why_not_back_up, why_not_correct;   ///< Sentences; empty when it can.
+  QString why_not_stage, why_not_stage_back;
   double cursor_s = 0, duration_s = 0;
   double speed = 1, rate = 0;
 };
@@ -49,6 +53,13 @@ class PlayController final : public QObject {
   void acceptAccuracy();
   void play();                                         ///< Forwards at |speed|.
   void backUp();                                       ///< Backwards at |speed|.
+  /// As play() and backUp(), to the next border between two stages; the arm rests there.
+  void playStage();
+  void backUpStage();
+  /// Hold to run, from the next order on: nothing runs longer than 250 ms after the last keepRunning().
+  void setOnlyHeld(bool on);
+  bool onlyHeld() const { return m_only_held; }
+  void keepRunning();
   void pause();
   void setSpeed(double factor);                        ///< -2 ... 2; takes effect in motion.
   void scrub(double t_s);                              ///< Moves the shown cursor, never the robot.
@@ -69,7 +80,8 @@ class PlayController final : public QObject {
   void takeCorrection(Result<planning::CorrectedPlan> corrected);
   void finishCorrection();
   void dropCorrections();
-  void move(double direction);
+  void move(double direction, std::optional<double> until_s = {});
+  std::optional<double> nextBorder(double direction) const;
   void forgetOtherPlan();
   QString whyNotMove() const;
   void rebuild();
@@ -84,6 +96,7 @@ class PlayController final : public QObject {
   PlanId m_accepted;                                   // The plan whose accuracy the operator accepted.
   PlanId m_loaded;                                     // The plan the runtime holds; invalid: none of ours.
   double m_cursor = 0, m_speed = 1;
+  bool m_only_held = false;
   PlayState m_state;
   std::vector<planning::Nudge> m_nudges;               // To be done one after another.
   bool m_planning_correction = false;                  // A job is at it.

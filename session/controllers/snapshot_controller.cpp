@@ -22,6 +22,8 @@ SnapshotController::SnapshotController(Document& document, EditHistory& history,
 QString SnapshotController::whyNot() const {
   if (m_feed == nullptr) return tr("No robot is connected. Connect one, or open pictures from files.");
   if (!m_document.workcell()) return tr("No workcell is loaded, so that no camera is known.");
+  const auto base = m_feed->base();
+  if (base && !base->twist.standing()) return tr("The base is driving: let it come to rest first.");
   if (m_state != State::kIdle) return tr("Pictures are being taken.");
   return {};
 }
@@ -54,6 +56,10 @@ void SnapshotController::request(std::vector<std::string> cameras, PaneSide side
 void SnapshotController::poll() {
   if (m_state != State::kWaiting) return;
   if (m_feed == nullptr) return fail("The robot was disconnected while a picture was being taken.");
+  m_refusal.clear();
+  // Odometry is not kept by time: the base must stand from the request on.
+  if (const auto base = m_feed->base(); base && !base->twist.standing())
+    return fail("The base began to drive while a picture was being taken.");
   collect();
   if (complete()) {
     auto chosen = choose();
@@ -61,16 +67,19 @@ void SnapshotController::poll() {
       m_timer.stop();
       const auto workcell = m_document.workcell();
       const double to_wall_s = wallTime_s() - m_feed->now_s();
-      return decode([workcell, to_wall_s, frames = std::move(*chosen)]() -> Result<Snapshots> {
-        Snapshots snapshots;
-        for (const auto& frame : frames) {
-          auto snapshot = makeSnapshot(*workcell, frame);
-          if (!snapshot) return snapshot.error();
-          snapshot->wall_time_s = snapshot->stamp_s + to_wall_s;
-          snapshots.push_back(std::move(*snapshot));
-        }
-        return snapshots;
-      }, m_side);
+      return decode(
+          [workcell, to_wall_s, base = m_feed->base(), frames = std::move(*chosen)]() -> Result<Snapshots> {
+            Snapshots snapshots;
+            for (const auto& frame : frames) {
+              auto snapshot = makeSnapshot(*workcell, frame);
+              if (!snapshot) return snapshot.error();
+              snapshot->wall_time_s = snapshot->stamp_s + to_wall_s;
+              snapshot->base = base;
+              snapshots.push_back(std::move(*snapshot));
+            }
+            return snapshots;
+          },
+          m_side);
     }
     m_refusal = chosen.error().message;
   }
@@ -85,10 +94,21 @@ void SnapshotController::collect() {
     if (!kept.empty() && kept.back().frame->stamp_s >= frame->stamp_s) continue;
     // The state at the exposure may still be on its way: ask again at the next poll.
     auto state = m_feed->jointStateAt(frame->stamp_s);
-    if (!state) continue;
-    kept.push_back({frame, std::move(*state)});
+    const auto zoom = m_feed->zoomAt(m_cameras[i], frame->stamp_s);
+    if (!state || !zoom || zoomMoves(m_cameras[i], frame->stamp_s, *zoom)) continue;
+    kept.push_back({frame, std::move(*state), *zoom});
     if (kept.size() > kFramesKept) kept.erase(kept.begin());
   }
+}
+
+// While the lens turns, the picture and what is told of the lens are not of one instant.
+bool SnapshotController::zoomMoves(const std::string& camera, double stamp_s, std::optional<double> zoom) {
+  constexpr double kBefore_s = 0.1, kStill = 0.002;
+  if (!zoom) return false;
+  const auto before = m_feed->zoomAt(camera, stamp_s - kBefore_s);
+  if (!before || !*before || std::abs(**before - *zoom) <= kStill) return false;
+  m_refusal = "The zoom of " + camera + " is moving. Wait until it stands and take the picture again.";
+  return true;
 }
 
 bool SnapshotController::complete() const {

@@ -63,6 +63,7 @@ class SnapshotController final : public QObject {
   void request(std::vector<std::string> cameras, PaneSide side);
   void poll();
   void collect();
+  bool zoomMoves(const std::string& camera, double stamp_s, std::optional<double> zoom);
   bool complete() const;
   /// The frames to use, nearest in time; kRefused as checkPair.  @pre complete()
   Result<std::vector<StampedFrame>> choose() const;

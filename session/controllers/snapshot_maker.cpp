@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
-#include <mutex>
 
 #include "core/clock.h"
 #include "core/text.h"
+#include "session/controllers/calibrated_camera.h"
 #include "vision/camera/camera_file.h"
 #include "vision/snapshot/image_file.h"
 #include "vision/snapshot/views_file.h"
@@ -17,34 +16,6 @@ namespace longarm::session {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Camera files read once per change of the file: live overlays ask at every frame.
-class CameraFileCache {
- public:
-  Result<vision::CameraFile> read(const std::string& path) {
-    std::error_code error;
-    const auto changed = fs::last_write_time(path, error);
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    const auto found = m_files.find(path);
-    if (!error && found != m_files.end() && found->second.changed == changed) return found->second.file;
-    auto file = vision::readCameraFile(path);
-    if (file && !error) m_files[path] = {changed, *file};
-    return file;
-  }
-
- private:
-  struct Entry {
-    fs::file_time_type changed;
-    vision::CameraFile file;
-  };
-  std::mutex m_mutex;
-  std::map<std::string, Entry> m_files;
-};
-
-CameraFileCache& cameraFiles() {
-  static CameraFileCache cache;
-  return cache;
-}
 
 double largestSpeed(const JointState& state, std::string* joint) {
   double largest = 0;
@@ -81,14 +52,18 @@ Status checkSize(const cv::Mat& image, const vision::CameraModel& camera, const 
                                         ". Use the picture as it was taken, or the file of this camera."};
 }
 
+void giveSize(const cv::Mat& image, vision::CameraModel* camera) {
+  if (camera->width <= 0) camera->width = image.cols;
+  if (camera->height <= 0) camera->height = image.rows;
+}
+
 Result<vision::Snapshot> pictureOf(const vision::View& view, const std::string& path) {
   auto image = vision::loadImage(path);
   if (!image) return image.error();
   if (const Status fits = checkSize(*image, view.camera, path); !fits) return fits.error();
   vision::Snapshot snapshot;
   snapshot.view = view;
-  if (snapshot.view.camera.width <= 0) snapshot.view.camera.width = image->cols;
-  if (snapshot.view.camera.height <= 0) snapshot.view.camera.height = image->rows;
+  giveSize(*image, &snapshot.view.camera);
   snapshot.image = std::move(*image);
   snapshot.wall_time_s = wallTime_s();
   snapshot.source = path;
@@ -120,24 +95,29 @@ Status checkPair(const StampedFrame& a, const StampedFrame& b, const PairLimits&
 }
 
 Result<vision::View> cameraView(const planning::Workcell& workcell, const std::string& camera,
-                                const JointState& state) {
+                                const JointState& state, std::optional<double> zoom) {
   const planning::CameraSpec* spec = workcell.camera(camera);
   if (spec == nullptr) return {ErrorCode::kNotFound, "The workcell " + workcell.name + " has no camera \"" + camera + "\"."};
   if (!workcell.model) return {ErrorCode::kNotFound, "The workcell " + workcell.name + " has no robot."};
   const auto link = workcell.model->linkIndex(spec->link);
   if (!link) return link.error();
-  auto file = cameraFiles().read(spec->calibration);
+  const auto calibration = calibrationOf(*spec);
+  if (!calibration) return calibration.error();
+  auto file = (*calibration)->at(zoom);
   if (!file) return file.error();
   vision::View view;
   view.name = camera;
   view.camera = file->camera;
   view.parent = workcell.model->links()[static_cast<std::size_t>(workcell.model->rootLink())].name;
   view.sigma_px = spec->sigma_px;
+  view.zoom = zoom;
   Eigen::VectorXd q = workcell.model->neutral();
   workcell.model->assign(state, q);
   view.X_WC = workcell.model->forward(q, *link);
-  // A calibrated mount: the optical frame where the link of the robot's description is not quite.
-  if (file->pose && file->pose->parent == spec->link) view.X_WC = view.X_WC * file->pose->pose;
+  // A calibrated mount: the optical frame where the link of the robot's description is not quite.  A zoom table's mount
+  // is that link.
+  const bool mounted = file->pose && ((*calibration)->hasTable() || file->pose->parent == spec->link);
+  if (mounted) view.X_WC = view.X_WC * file->pose->pose;
   if (file->covariance) view.intrinsics_covariance = file->covariance->topLeftCorner<10, 10>();
   if (file->covariance && file->covariance->rows() == 16) {
     // The file's covariance is of the optical frame in its parent; turned to the root it keeps its size.
@@ -152,7 +132,7 @@ Result<vision::View> cameraView(const planning::Workcell& workcell, const std::s
 }
 
 Result<vision::Snapshot> makeSnapshot(const planning::Workcell& workcell, const StampedFrame& stamped) {
-  auto view = cameraView(workcell, stamped.frame->camera, stamped.state);
+  auto view = cameraView(workcell, stamped.frame->camera, stamped.state, stamped.zoom);
   if (!view) return view.error();
   auto image = vision::decodeImage(stamped.frame->data);
   if (!image) return {image.error().code, "The picture of " + stamped.frame->camera + ": " + image.error().message};
@@ -161,6 +141,7 @@ Result<vision::Snapshot> makeSnapshot(const planning::Workcell& workcell, const 
   }
   vision::Snapshot snapshot;
   snapshot.view = std::move(*view);
+  giveSize(*image, &snapshot.view.camera);
   snapshot.image = std::move(*image);
   snapshot.stamp_s = stamped.frame->stamp_s;
   snapshot.wall_time_s = wallTime_s();

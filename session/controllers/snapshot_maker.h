@@ -18,6 +18,7 @@ namespace longarm::session {
 struct StampedFrame {
   std::shared_ptr<const hardware::Frame> frame;
   JointState state;
+  std::optional<double> zoom;              ///< Of a camera that zooms.
 };
 
 /// The largest joint change between two states, in rad or m, and its joint; joints that only one has are left out.
@@ -42,9 +43,10 @@ Status checkPair(const StampedFrame& a, const StampedFrame& b, const PairLimits&
 /// @returns kNotFound (camera or link unknown), kInvalidInput (damaged picture, bad camera file).  Thread-safe.
 Result<vision::Snapshot> makeSnapshot(const planning::Workcell& workcell, const StampedFrame& stamped);
 
-/// Camera pose and intrinsics of a workcell's camera at a joint state, for overlays on live pictures.
+/// Camera pose and intrinsics of a workcell's camera at a joint state and a setting of its zoom, for overlays on live
+/// pictures.  @returns kNotFound, kOutOfLimits: the camera is not calibrated at this zoom; as CameraCalibration.
 Result<vision::View> cameraView(const planning::Workcell& workcell, const std::string& camera,
-                                const JointState& state);
+                                const JointState& state, std::optional<double> zoom = {});
 
 /// A picture from files.
 struct PictureFiles {

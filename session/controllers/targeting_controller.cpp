@@ -1,5 +1,6 @@
 #include "session/controllers/targeting_controller.h"
 
+#include <iterator>
 #include <utility>
 
 #include "session/commands/world_commands.h"
@@ -84,6 +85,7 @@ vision::Overlay TargetingController::overlay(PaneSide side) const {
 vision::Overlay TargetingController::overlay(const vision::View& view) const {
   OverlayOptions options;
   options.path_points = &m_path;
+  options.drafts = m_tools.drafts();
   return buildOverlay(m_document, view, options);
 }
 
@@ -97,7 +99,12 @@ void TargetingController::setThird(SnapshotId id) {
 vision::Overlay TargetingController::thirdOverlay() const {
   OverlayOptions options;
   options.path_points = &m_path;
-  vision::Overlay overlay = buildOverlay(m_document, m_third, options);
+  options.drafts = m_tools.drafts();
+  vision::Overlay overlay;
+  const auto links = m_tools.ownLinksShown() ? m_tools.ownLinks().of(m_document.snapshot(m_third), m_document.workcell()) : nullptr;
+  if (links) overlay.shapes = links->areas;
+  vision::Overlay sketch = buildOverlay(m_document, m_third, options);
+  overlay.shapes.insert(overlay.shapes.end(), std::make_move_iterator(sketch.shapes.begin()), std::make_move_iterator(sketch.shapes.end()));
   const Handle active = m_tools.activeHandle();
   const FeatureId shown = active.valid() ? active.item : m_document.selection().primary;
   addThirdView(m_document, m_document.item(shown), active.valid() ? active.vertex : 0, m_third, &overlay);

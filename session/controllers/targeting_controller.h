@@ -47,6 +47,14 @@ class TargetingController final : public QObject {
   vision::Overlay overlay(const vision::View& view) const;
   QString hint() const { return QString::fromStdString(m_tools.hint()); }
   std::optional<LiveMeasure> liveMeasure() const { return m_tools.liveMeasure(); }
+  Handle activeHandle() const { return m_tools.activeHandle(); }
+  /// What the measure tool measured, for the scene.
+  std::optional<SceneDimension> dimension() const { return m_tools.dimension(); }
+  /// A vertex of a measured feature was picked in the scene: the measure tool takes it.  @returns whether it did.
+  bool takeVertex(const VertexRef& vertex) { return m_tools.takeVertex(vertex); }
+  OwnLinksCache& ownLinks() const { return m_tools.ownLinks(); }
+  /// Whether the robot's own links are tinted in snapshots.
+  void setOwnLinksShown(bool shown) { m_tools.setOwnLinksShown(shown); }
 
   std::vector<MatchWish> matchWishes() const { return m_tools.matchWishes(); }
   std::vector<MatchHelp> matchHelp() const { return m_tools.matchHelp(); }

@@ -70,6 +70,8 @@ Status WorldController::addSelected(WorldRole role) {
   for (auto& item : made) {
     item.id = {id++};
     item.role = role;
+    const auto source = made.size() == 1 ? m_document.selection().primary : item.source;
+    item.base = m_document.item(source) != nullptr ? m_document.baseOf(source) : m_document.base();
     if (const Status checked = checkWorldItem(item); !checked) return checked;
     commands.push_back(addWorldItem(std::move(item)));
   }

@@ -83,6 +83,12 @@ std::string Dimension::text() const {
   return formatFixed(value * degrees, 1) + " \u00b1 " + formatFixed(plusMinus95(sigma) * degrees, 1) + "\u00b0";
 }
 
+Result<Vector3d> positionOf(const Document& document, const VertexRef& vertex) {
+  const auto place = placeOf(document, vertex);
+  if (!place) return place.error();
+  return place->point.xyz;
+}
+
 Result<Dimension> distanceBetween(const Document& document, const VertexRef& a, const VertexRef& b) {
   const std::array<VertexRef, 2> refs{a, b};
   const auto places = placesOf(document, refs);

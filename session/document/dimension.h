@@ -30,6 +30,8 @@ struct Dimension {
 /// features know of right angles.  Pure functions.
 /// @returns kInvalidInput (no such vertex, an outline of a pipe, vertices in different frames), or as triangulate().
 Result<Dimension> distanceBetween(const Document& document, const VertexRef& a, const VertexRef& b);
+/// Where a vertex is, in its pictures' parent frame [m].  @returns as distanceBetween.
+Result<Eigen::Vector3d> positionOf(const Document& document, const VertexRef& vertex);
 /// The angle at `corner` between the ways to a and b.  @returns also kDegenerate when one of them is nowhere to go.
 Result<Dimension> angleAt(const Document& document, const VertexRef& a, const VertexRef& corner, const VertexRef& b);
 

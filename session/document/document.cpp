@@ -1,6 +1,7 @@
 #include "session/document/document.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/require.h"
 #include "core/text.h"
@@ -40,6 +41,11 @@ std::string tooFewPictures(const SketchItem& item, int vertex, std::size_t count
   const std::string where = count == 0 ? "in no picture yet" : "in one picture only";
   return "'" + item.name + "' is not measured: " + vertexWord(item, vertex) + " is marked " + where +
          ". Mark it in two pictures.";
+}
+
+// Pictures without odometry are from one place.
+bool sameBasePlace(const std::optional<BaseState>& a, const std::optional<BaseState>& b) {
+  return a && b ? samePlace(*a, *b) : a.has_value() == b.has_value();
 }
 
 }  // namespace
@@ -113,7 +119,72 @@ Measurement Document::measurePipe(const SketchItem& item) const {
   return {std::move(*feature), {}};
 }
 
+bool Document::elsewhere(const std::optional<BaseState>& place) const {
+  return m_base && place && !samePlace(*m_base, *place);
+}
+
+bool Document::stale(SnapshotId id) const {
+  const SnapshotPtr picture = snapshot(id);
+  return picture && elsewhere(picture->base);
+}
+
+bool Document::stale(const WorldItem& item) const { return elsewhere(item.base); }
+
+// Places of the base that the item's pictures were taken from: the present one first, then the latest.
+std::vector<std::optional<BaseState>> Document::placesOf(const SketchItem& item) const {
+  std::vector<std::optional<BaseState>> places;
+  for (auto entry = item.picks.rbegin(); entry != item.picks.rend(); ++entry) {
+    const SnapshotPtr picture = snapshot(entry->first);
+    if (!picture) continue;
+    const bool known = std::any_of(places.begin(), places.end(),
+                                   [&](const auto& place) { return sameBasePlace(place, picture->base); });
+    if (!known) places.push_back(picture->base);
+  }
+  std::stable_partition(places.begin(), places.end(),
+                        [this](const auto& place) { return !elsewhere(place); });
+  return places;
+}
+
+Measurement Document::measureFrom(const SketchItem& item, const std::optional<BaseState>& place) const {
+  SketchItem part = item;
+  for (auto entry = part.picks.begin(); entry != part.picks.end();) {
+    const SnapshotPtr picture = snapshot(entry->first);
+    entry = picture && sameBasePlace(place, picture->base) ? std::next(entry) : part.picks.erase(entry);
+  }
+  Measurement measured = measureAll(part);
+  measured.stale = elsewhere(place);
+  return measured;
+}
+
+std::optional<BaseState> Document::baseOf(FeatureId id) const {
+  const SketchItem* found = item(id);
+  LONGARM_REQUIRE(found != nullptr, "no item " + std::to_string(id.value));
+  const auto places = placesOf(*found);
+  for (const auto& place : places) {
+    if (measureFrom(*found, place).feature) return place;
+  }
+  return places.empty() ? std::nullopt : places.front();
+}
+
+// Pictures from different places of the base do not go together: the base does not know how far it went well
+// enough.
 Measurement Document::measure(const SketchItem& item) const {
+  const auto places = placesOf(item);
+  if (places.size() < 2) {
+    Measurement measured = measureAll(item);
+    measured.stale = !places.empty() && elsewhere(places.front());
+    return measured;
+  }
+  std::optional<Measurement> first;
+  for (const auto& place : places) {
+    Measurement measured = measureFrom(item, place);
+    if (measured.feature) return measured;
+    if (!first) first = std::move(measured);
+  }
+  return *std::move(first);
+}
+
+Measurement Document::measureAll(const SketchItem& item) const {
   if (item.pipe) return measurePipe(item);
   std::vector<std::vector<vision::Sighting>> vertices(static_cast<std::size_t>(vision::vertexCount(item.kind)));
   for (const auto& [id, list] : item.picks) {
@@ -204,6 +275,49 @@ void Document::removeSnapshot(SnapshotId id) {
     if (item.picks.count(id) != 0) remeasure(item);
   }
   notify(ChangeKind::kSnapshotRemoved, id.value);
+}
+
+void Document::replaceSnapshot(SnapshotPtr snapshot) {
+  const auto found = std::find_if(m_state.snapshots.begin(), m_state.snapshots.end(),
+                                  [&](const SnapshotPtr& s) { return s->id == snapshot->id; });
+  LONGARM_REQUIRE(found != m_state.snapshots.end(), "no snapshot " + std::to_string(snapshot->id.value));
+  *found = snapshot;
+  tellItemsOf({snapshot->id});
+  for (const PaneSide side : {PaneSide::kLeft, PaneSide::kRight}) {
+    if (paneSnapshotId(side) == snapshot->id)
+      notify(ChangeKind::kPaneChanged, static_cast<std::uint64_t>(side));
+  }
+}
+
+// Measures the items of these pictures anew.
+void Document::tellItemsOf(const std::set<SnapshotId>& pictures) {
+  std::vector<FeatureId> changed;
+  for (const auto& item : m_state.items) {
+    const bool shows = std::any_of(item.picks.begin(), item.picks.end(),
+                                   [&](const auto& entry) { return pictures.count(entry.first) != 0; });
+    if (!shows) continue;
+    remeasure(item);
+    changed.push_back(item.id);
+  }
+  for (const FeatureId id : changed) notify(ChangeKind::kItemChanged, id.value);
+}
+
+void Document::setBase(const std::optional<BaseState>& base) {
+  std::set<SnapshotId> pictures;
+  std::vector<WorldItemId> bodies;
+  const auto before = std::exchange(m_base, base);
+  const auto changed = [&](const std::optional<BaseState>& place) {
+    const bool was = before && place && !samePlace(*before, *place);
+    return was != elsewhere(place);
+  };
+  for (const auto& snapshot : m_state.snapshots) {
+    if (changed(snapshot->base)) pictures.insert(snapshot->id);
+  }
+  for (const auto& item : m_state.world) {
+    if (changed(item.base)) bodies.push_back(item.id);
+  }
+  if (!pictures.empty()) tellItemsOf(pictures);
+  for (const WorldItemId id : bodies) notify(ChangeKind::kWorldChanged, id.value);
 }
 
 void Document::setPane(PaneSide side, SnapshotId id) {

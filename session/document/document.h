@@ -66,6 +66,7 @@ struct Selection {
 struct Measurement {
   std::optional<vision::Feature> feature;
   std::string reason;                      ///< A sentence when there is no feature.
+  bool stale = false;                      ///< Its pictures were taken before the base was driven elsewhere.
 };
 
 /// The part of the document that undo and redo restore bit for bit.  Plain value.
@@ -120,6 +121,15 @@ class Document {
   const std::optional<PlanRecord>& plan() const { return m_plan; }
   const std::shared_ptr<const planning::Workcell>& workcell() const { return m_workcell; }
 
+  /// Where the base is now; empty: unknown, and nothing is stale.
+  const std::optional<BaseState>& base() const { return m_base; }
+  bool stale(SnapshotId id) const;
+  bool stale(const WorldItem& item) const;
+  /// Where the base was when the pictures that measure it were taken.  @pre an item of this id exists
+  std::optional<BaseState> baseOf(FeatureId id) const;
+  /// As measure(), from pictures taken near this place of the base alone.
+  Measurement measureFrom(const SketchItem& item, const std::optional<BaseState>& place) const;
+
   const std::vector<WorldItem>& world() const { return m_state.world; }
   const WorldItem* worldItem(WorldItemId id) const;          ///< Null if there is none.
   bool pinned(SnapshotId id) const { return m_state.pinned.count(id) != 0; }
@@ -141,6 +151,7 @@ class Document {
   void insertSnapshot(std::size_t index, SnapshotPtr snapshot);
   void removeSnapshot(SnapshotId id);                        ///< Panes that show it go empty.
   void setPane(PaneSide side, SnapshotId id);
+  void replaceSnapshot(SnapshotPtr snapshot);  ///< @pre one of its id exists
   void insertItem(std::size_t index, SketchItem item);
   void removeItem(FeatureId id);                             ///< Leaves the selection too.
   void replaceItem(const SketchItem& item);                  ///< @pre an item of its id exists
@@ -156,19 +167,26 @@ class Document {
   void select(Selection selection);                          ///< Ids that do not exist are dropped.
   PlanId setPlan(PlanRecord record);                         ///< Gives the id.
   void clearPlan();
+  /// Pictures and bodies from elsewhere (samePlace) become stale; what changes is measured and told anew.
+  void setBase(const std::optional<BaseState>& base);
   void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
   /// @}
 
  private:
   void notify(ChangeKind kind, std::uint64_t id = 0);
   void remeasure(const SketchItem& item);
+  Measurement measureAll(const SketchItem& item) const;
   Measurement measurePipe(const SketchItem& item) const;
+  std::vector<std::optional<BaseState>> placesOf(const SketchItem& item) const;
+  void tellItemsOf(const std::set<SnapshotId>& pictures);
+  bool elsewhere(const std::optional<BaseState>& place) const;
 
   DocumentState m_state;
   std::map<FeatureId, Measurement> m_measurements;
   Selection m_selection;
   std::optional<PlanRecord> m_plan;
   std::shared_ptr<const planning::Workcell> m_workcell;
+  std::optional<BaseState> m_base;
   std::uint64_t m_next_snapshot = 1, m_next_feature = 1, m_next_world = 1, m_next_plan = 1;
   std::map<int, std::function<void(const Change&)>> m_observers;
   int m_next_observer = 1;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "session/document/template_json.h"
 #include "vision/camera/camera_file.h"
 #include "vision/snapshot/image_file.h"
 
@@ -63,6 +64,9 @@ json poseJson(const std::string& parent, const Pose& pose) {
   return {{"parent", parent}, {"xyz", numbers(xyz.data(), 3)}, {"quaternion_xyzw", numbers(quaternion.data(), 4)}};
 }
 
+// Where the base was; how fast it went is of no use later.
+json baseJson(const BaseState& base) { return {{"x", base.x}, {"y", base.y}, {"yaw", base.yaw}}; }
+
 json snapshotJson(const vision::Snapshot& snapshot, const std::string& picture) {
   vision::CameraFile file;
   file.camera = snapshot.view.camera;
@@ -70,12 +74,14 @@ json snapshotJson(const vision::Snapshot& snapshot, const std::string& picture) 
               {"camera", vision::toJson(file)}, {"pose", poseJson(snapshot.view.parent, snapshot.view.X_WC)},
               {"sigma_px", snapshot.view.sigma_px}, {"stamp_s", snapshot.stamp_s},
               {"wall_time_s", snapshot.wall_time_s}, {"source", snapshot.source}};
+  if (snapshot.view.zoom) out["zoom"] = *snapshot.view.zoom;
   if (!snapshot.view.intrinsics_covariance.isZero(0)) {
     out["intrinsics_covariance"] = numbers(snapshot.view.intrinsics_covariance.data(), 100);
   }
   if (!snapshot.view.pose_covariance.isZero(0)) {
     out["pose_covariance"] = numbers(snapshot.view.pose_covariance.data(), 36);
   }
+  if (snapshot.base) out["base"] = baseJson(*snapshot.base);
   if (!snapshot.robot_state.names.empty()) {
     const JointState& state = snapshot.robot_state;
     out["joints"] = {{"stamp_s", state.stamp_s}, {"names", state.names},
@@ -119,7 +125,9 @@ json worldJson(const WorldItem& item) {
   json out = {{"id", item.id.value}, {"kind", toString(item.kind)}, {"name", item.name}, {"pose", poseJson(item.parent, item.X_WO)},
               {"size", numbers(item.size.data(), 3)},
               {"margin_m", item.margin_m}, {"hidden", item.hidden}, {"role", toString(item.role)}, {"source", item.source.value}};
+  if (item.base) out["base"] = baseJson(*item.base);
   for (const auto& point : item.points) out["points"].push_back(numbers(point.data(), 3));
+  if (item.kind == WorldKind::kTemplate) out.update(templateJson(item));
   return out;
 }
 
@@ -209,6 +217,14 @@ JointState readJoints(const json& value, const std::string& where) {
   return state;
 }
 
+BaseState readBase(const json& value, const std::string& where) {
+  BaseState base;
+  base.x = number(need(value, "x", where), where + ".x");
+  base.y = number(need(value, "y", where), where + ".y");
+  base.yaw = number(need(value, "yaw", where), where + ".yaw");
+  return base;
+}
+
 cv::Mat readPicture(const fs::path& folder, const std::string& name, const std::string& where) {
   const bool plain = !name.empty() && name.find_first_of("/\\") == std::string::npos && name[0] != '.' &&
                      name.find('\0') == std::string::npos;
@@ -229,6 +245,7 @@ SnapshotPtr readSnapshot(const json& value, const fs::path& folder, const std::s
   readPose(need(value, "pose", where), where + ".pose", view);
   view.sigma_px = number(need(value, "sigma_px", where), where + ".sigma_px");
   if (!(view.sigma_px > 0)) fault(where + ".sigma_px", "is " + formatNumber(view.sigma_px) + ", expected > 0");
+  if (value.contains("zoom")) view.zoom = number(value["zoom"], where + ".zoom");
   if (value.contains("intrinsics_covariance")) {
     const auto list = vectorOf<Eigen::VectorXd>(value["intrinsics_covariance"], 100, where + ".intrinsics_covariance");
     view.intrinsics_covariance = Eigen::Map<const Eigen::Matrix<double, 10, 10>>(list.data());
@@ -240,6 +257,7 @@ SnapshotPtr readSnapshot(const json& value, const fs::path& folder, const std::s
   snapshot->stamp_s = number(need(value, "stamp_s", where), where + ".stamp_s");
   snapshot->wall_time_s = number(need(value, "wall_time_s", where), where + ".wall_time_s");
   snapshot->source = need(value, "source", where).is_string() ? value["source"].get<std::string>() : "";
+  if (value.contains("base")) snapshot->base = readBase(value["base"], where + ".base");
   if (value.contains("joints")) snapshot->robot_state = readJoints(value["joints"], where + ".joints");
   snapshot->image = readPicture(folder, text(need(value, "image", where), where + ".image"), where + ".image");
   const bool sized = view.camera.width > 0 && view.camera.height > 0;
@@ -321,7 +339,7 @@ WorldItem readWorldItem(const json& value, const std::string& where) {
   item.id = {idNumber(need(value, "id", where), where + ".id", false)};
   const std::string kind = text(need(value, "kind", where), where + ".kind");
   const auto found = worldKindFrom(kind);
-  if (!found) fault(where + ".kind", "is \"" + kind + "\", expected box, slab, pipe or points");
+  if (!found) fault(where + ".kind", "is \"" + kind + "\", expected box, slab, pipe, points or template");
   item.kind = *found;
   item.name = text(need(value, "name", where), where + ".name");
   readWorldPose(need(value, "pose", where), where + ".pose", item);
@@ -338,6 +356,10 @@ WorldItem readWorldItem(const json& value, const std::string& where) {
     if (!points.is_array() || points.size() > kMaxItems) fault(where + ".points", "is not a list, or too long");
     for (const auto& point : points) item.points.push_back(vectorOf<Eigen::VectorXd>(point, 3, where + ".points"));
   }
+  if (item.kind == WorldKind::kTemplate) {
+    if (const Status read = readTemplate(value, item); !read) fault(where, read.error().message);
+  }
+  if (value.contains("base")) item.base = readBase(value["base"], where + ".base");
   if (const Status checked = checkWorldItem(item); !checked) fault(where, checked.error().message);
   return item;
 }

@@ -29,6 +29,8 @@ void fillTexts(FeatureRow& row) {
   if (row.size) {
     const auto mm = [&](int axis) { return formatFixed((*row.size)[axis] * 1000, 0); };
     row.length_text = mm(0) + " \u00d7 " + mm(1) + " \u00d7 " + millimetreText((*row.size)[2], 0);
+    const auto edge = [&](int axis) { return millimetreText((*row.size)[axis], (*row.size_plus_minus)[axis]); };
+    row.size_text = edge(0) + " \u00d7 " + edge(1) + " \u00d7 " + edge(2);
   }
 }
 
@@ -66,6 +68,7 @@ void fillNumbers(FeatureRow& row, const vision::Feature& feature) {
   }
   if (feature.box) {
     row.size = feature.box->size;
+    row.size_plus_minus = plusMinus95(1) * feature.box->sizeSigma();
     row.xyz = feature.box->X_WB.translation();
     row.sigma = feature.box->covariance.diagonal().head<3>().cwiseMax(0).cwiseSqrt();
   }
@@ -88,6 +91,7 @@ FeatureRow featureRow(const SketchItem& item, const Measurement& measurement) {
   row.reason = measurement.reason;
   if (!measurement.feature || measurement.feature->vertices.empty()) return row;
   row.measured = true;
+  row.stale = measurement.stale;
   fillNumbers(row, *measurement.feature);
   fillTexts(row);
   return row;

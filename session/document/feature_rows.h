@@ -19,12 +19,13 @@ struct FeatureRow {
   bool hidden = false, locked = false, selected = false, primary = false;
   std::optional<std::uint32_t> colour;
   bool measured = false;
+  bool stale = false;                          ///< Measured from where the base no longer is.
   std::string reason;                          ///< Why it is not measured: what to do.
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();   ///< Point, or middle of a line, plane or box [m].
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero(); ///< 1 sigma per axis [m].
   double plus_minus = 0;                       ///< 95 % along the worst axis of a vertex [m].
   std::optional<double> length, length_plus_minus;   ///< Lines only; +- is 95 % [m].
-  std::optional<Eigen::Vector3d> size;         ///< Boxes only [m].
+  std::optional<Eigen::Vector3d> size, size_plus_minus;   ///< Boxes only; +- is 95 % [m].
   std::optional<double> radius, radius_plus_minus;   ///< Pipes only; +- is 95 % [m].
   bool pipe = false;                           ///< Marked by a pipe's outlines.
   std::uint64_t group = 0;
@@ -32,6 +33,7 @@ struct FeatureRow {
   double miss = 0;                             ///< Largest of its vertices [m].
   std::vector<std::string> warnings;
   std::string xyz_text, plus_minus_text, length_text, miss_text;   ///< A box's length is its size.
+  std::string size_text;                       ///< A box's edges, each with its +-.
 };
 
 FeatureRow featureRow(const SketchItem& item, const Measurement& measurement);

@@ -29,15 +29,16 @@ void addText(Overlay& overlay, OverlayRole role, const Eigen::Vector2d& pixel, s
 /// Name, and how long or where to within what; then the operator's note.
 std::string labelOf(const SketchItem& item, const Measurement& measurement) {
   const std::string note = item.note.empty() ? std::string() : "  \u2013 " + item.note;
-  if (!measurement.feature) return item.name + note;
+  if (!measurement.feature) return item.name + (item.markedTwice() ? "  not measured" : "") + note;
+  if (measurement.stale) return item.name + "  stale: the base was driven" + note;
   const FeatureRow row = featureRow(item, measurement);
-  if (row.length) return item.name + "  " + row.length_text + note;
+  if (row.length || row.size) return item.name + "  " + row.length_text + note;
   return item.name + "  \u00b1 " + millimetreText(row.plus_minus) + note;
 }
 
-OverlayRole labelRole(const Measurement& measurement) {
-  const bool warns = measurement.feature && !measurement.feature->warnings.empty();
-  return warns ? OverlayRole::kWarning : OverlayRole::kLabel;
+OverlayRole labelRole(const SketchItem& item, const Measurement& measurement) {
+  const bool warns = measurement.feature ? !measurement.feature->warnings.empty() : item.markedTwice();
+  return warns || measurement.stale ? OverlayRole::kWarning : OverlayRole::kLabel;
 }
 
 void addEllipses(Overlay& overlay, const vision::View& view, const vision::Feature& feature) {
@@ -58,6 +59,12 @@ Eigen::Vector2d labelPlace(const SketchItem& item, SnapshotId snapshot) {
     }
   }
   return count == 0 ? sum : Eigen::Vector2d(sum / count);
+}
+
+const SketchItem* draftOf(FeatureId id, const OverlayOptions& options) {
+  const auto same = [id](const SketchItem* draft) { return draft->id == id; };
+  const auto found = std::find_if(options.drafts.begin(), options.drafts.end(), same);
+  return found == options.drafts.end() ? nullptr : *found;
 }
 
 struct ItemStyle {
@@ -109,7 +116,7 @@ void addItem(Overlay& overlay, const Document& document, const SketchItem& item,
   addEdges(overlay, item, snapshot, style.role);
   addHandles(overlay, item, snapshot.id, style, options);
   if (options.labels && item.placedIn(snapshot.id)) {
-    addText(overlay, labelRole(measured), labelPlace(item, snapshot.id), labelOf(item, measured));
+    addText(overlay, labelRole(item, measured), labelPlace(item, snapshot.id), labelOf(item, measured));
   }
   if (!item.colour) return;
   for (std::size_t i = first; i < overlay.shapes.size(); ++i) {
@@ -161,11 +168,11 @@ Overlay buildOverlay(const Document& document, SnapshotId id, const OverlayOptio
   addPlan(overlay, document, snapshot->view, options);
   for (const auto& body : document.world()) addWorldItem(body, snapshot->view, &overlay);
   for (const auto& item : document.items()) {
-    if (options.draft != nullptr && options.draft->id == item.id) continue;
+    if (draftOf(item.id, options) != nullptr) continue;
     if (!item.hidden) addItem(overlay, document, item, *snapshot, options, false);
   }
   // Last, so that what is being worked on lies on top.
-  if (options.draft != nullptr) addItem(overlay, document, *options.draft, *snapshot, options, true);
+  for (const SketchItem* draft : options.drafts) addItem(overlay, document, *draft, *snapshot, options, true);
   return overlay;
 }
 
@@ -174,14 +181,15 @@ Overlay buildOverlay(const Document& document, const vision::View& view, const O
   addPlan(overlay, document, view, options);
   for (const auto& body : document.world()) addWorldItem(body, view, &overlay);
   for (const auto& item : document.items()) {
-    const Measurement& measured = document.measurement(item.id);
+    const SketchItem* draft = draftOf(item.id, options);
+    const Measurement measured = draft != nullptr ? document.measure(*draft) : document.measurement(item.id);
     if (item.hidden || !measured.feature || measured.feature->parent != view.parent) continue;
     const bool selected = document.selection().contains(item.id);
     vision::addFeature(*measured.feature, view, selected ? OverlayRole::kSelected : OverlayRole::kSketch, &overlay);
     if (!options.labels) continue;
     const auto pixel = view.project(measured.feature->vertices.front().xyz);
     if (pixel && view.camera.containsPixel(*pixel)) {
-      addText(overlay, labelRole(measured), *pixel, labelOf(item, measured));
+      addText(overlay, labelRole(item, measured), *pixel, labelOf(item, measured));
     }
   }
   return overlay;

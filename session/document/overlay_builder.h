@@ -13,8 +13,8 @@ namespace longarm::session {
 
 struct OverlayOptions {
   bool labels = true, ellipses = true, path = true;
-  /// Drawn in place of the item of the same id, or added when the document has none: a drag's preview.
-  const SketchItem* draft = nullptr;
+  /// Drawn in place of the items of the same ids, or added where the document has none: a drag's preview.
+  std::vector<const SketchItem*> drafts;
   FeatureId active_item;                   ///< Whose vertex has the keyboard; drawn as kActiveHandle.
   int active_vertex = -1;
   SnapshotId active_snapshot;

@@ -65,6 +65,13 @@ int SketchItem::placedCount(int vertex) const {
   return count;
 }
 
+bool SketchItem::markedTwice() const {
+  for (int vertex = 0; vertex < vertices(); ++vertex) {
+    if (placedCount(vertex) < 2) return false;
+  }
+  return true;
+}
+
 std::vector<std::pair<int, int>> edgesOf(const SketchItem& item) {
   if (item.pipe) return {{0, 1}, {2, 3}};
   switch (item.kind) {

@@ -64,6 +64,8 @@ struct SketchItem {
   bool placedIn(SnapshotId snapshot) const;
   /// In how many pictures this vertex is placed.
   int placedCount(int vertex) const;
+  /// Whether everything is placed in two pictures or more: what is not measured then will not be by marking more of it.
+  bool markedTwice() const;
 
   friend bool operator==(const SketchItem& a, const SketchItem& b);
   friend bool operator!=(const SketchItem& a, const SketchItem& b) { return !(a == b); }

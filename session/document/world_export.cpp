@@ -1,12 +1,13 @@
 #include "session/document/world_export.h"
 
 #include <array>
-#include <cmath>
 #include <cstring>
 
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "session/document/template_json.h"
+#include "planning/world/shape_triangles.h"
 
 namespace longarm::session {
 
@@ -15,74 +16,16 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kAround = 32;                  // sides of a cylinder or sphere
-
 struct Mesh {
   std::string name;
   std::vector<Vector3d> vertices;            // in the world
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-
-  std::uint32_t add(const Vector3d& p) {
-    vertices.push_back(p);
-    return static_cast<std::uint32_t>(vertices.size() - 1);
-  }
-  void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    triangles.push_back({a, b, c});
-    triangles.push_back({a, c, d});
-  }
+  std::vector<std::array<int, 3>> triangles;
 };
 
-void addBox(Mesh& mesh, const Pose& X, const Vector3d& size) {
-  for (int i = 0; i < 8; ++i) {
-    mesh.add(X * Vector3d((i & 1 ? 0.5 : -0.5) * size.x(), (i & 2 ? 0.5 : -0.5) * size.y(), (i & 4 ? 0.5 : -0.5) * size.z()));
-  }
-  mesh.quad(0, 2, 3, 1);
-  mesh.quad(4, 5, 7, 6);
-  mesh.quad(0, 1, 5, 4);
-  mesh.quad(2, 6, 7, 3);
-  mesh.quad(0, 4, 6, 2);
-  mesh.quad(1, 3, 7, 5);
-}
-
-// Rings from the lower end to the upper one, closed by a point at each end.
-void addTurned(Mesh& mesh, const Pose& X, const std::vector<std::pair<double, double>>& radius_z, double low, double high) {
-  const std::uint32_t bottom = mesh.add(X * Vector3d(0, 0, low));
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const auto& [radius, z] : radius_z) {
-    for (int i = 0; i < kAround; ++i) {
-      const double angle = 2 * M_PI * i / kAround;
-      mesh.add(X * Vector3d(radius * std::cos(angle), radius * std::sin(angle), z));
-    }
-  }
-  const std::uint32_t top = mesh.add(X * Vector3d(0, 0, high));
-  const auto rings = static_cast<std::uint32_t>(radius_z.size());
-  for (std::uint32_t i = 0; i < kAround; ++i) {
-    const std::uint32_t next = (i + 1) % kAround, last = first + (rings - 1) * kAround;
-    mesh.triangles.push_back({bottom, first + next, first + i});
-    for (std::uint32_t ring = 0; ring + 1 < rings; ++ring) {
-      const std::uint32_t here = first + ring * kAround, above = here + kAround;
-      mesh.quad(here + i, here + next, above + next, above + i);
-    }
-    mesh.triangles.push_back({top, last + i, last + next});
-  }
-}
-
 Mesh meshOf(const planning::WorldObject& body) {
-  Mesh mesh;
-  mesh.name = body.name;
-  if (const auto* box = std::get_if<planning::Box>(&body.shape)) addBox(mesh, body.X_WO, box->size);
-  if (const auto* c = std::get_if<planning::Cylinder>(&body.shape)) {
-    const double half = c->length / 2;
-    addTurned(mesh, body.X_WO, {{c->radius, -half}, {c->radius, half}}, -half, half);
-  }
-  if (const auto* s = std::get_if<planning::Sphere>(&body.shape)) {
-    std::vector<std::pair<double, double>> rings;
-    for (int i = 1; i < kAround / 2; ++i) {
-      const double angle = M_PI * i / (kAround / 2);
-      rings.emplace_back(s->radius * std::sin(angle), -s->radius * std::cos(angle));
-    }
-    addTurned(mesh, body.X_WO, rings, -s->radius, s->radius);
-  }
+  const auto shape = planning::trianglesOf(body.shape);
+  Mesh mesh{body.name, {}, shape->triangles};
+  for (const auto& p : shape->vertices) mesh.vertices.push_back(body.X_WO * p);
   return mesh;
 }
 
@@ -139,7 +82,7 @@ void addMesh(GlbParts& parts, const Mesh& mesh) {
   const std::size_t positions = parts.addView(first, kArrayBuffer);
   const std::size_t second = parts.binary.size();
   for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t index : triangle) append32(parts.binary, index);
+    for (const int index : triangle) append32(parts.binary, static_cast<std::uint32_t>(index));
   }
   const std::size_t indices = parts.addView(second, kIndexBuffer);
   parts.accessors.push_back({{"bufferView", positions}, {"componentType", kFloat}, {"count", mesh.vertices.size()}, {"type", "VEC3"},
@@ -197,6 +140,7 @@ std::string worldAsJson(const std::vector<WorldItem>& items) {
     const Eigen::Vector4d q = quaternionXyzw(item.X_WO.linear());
     json object = {{"name", item.name}, {"kind", toString(item.kind)}, {"size", vectorJson(item.size)},
                    {"margin_m", item.margin_m}, {"role", toString(item.role)}};
+    if (item.kind == WorldKind::kTemplate) object.update(templateJson(item));
     if (item.kind == WorldKind::kPoints) {
       for (const auto& point : item.points) object["points"].push_back(vectorJson(point));
     } else {

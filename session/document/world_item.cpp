@@ -33,15 +33,6 @@ bool sameBits(const A& a, const B& b) {
   return true;
 }
 
-double marginOf(const vision::Feature& feature) {
-  double worst = 0;
-  for (const auto& vertex : feature.vertices) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(vertex.covariance, Eigen::EigenvaluesOnly);
-    worst = std::max(worst, kNormal95 * std::sqrt(std::max(0.0, axes.eigenvalues()(2))));
-  }
-  return std::min(worst, kMostMargin_m);
-}
-
 Result<WorldItem> boxFrom(const vision::Feature& feature, WorldItem item) {
   if (!feature.box || !feature.box->is_box) {
     return Error{ErrorCode::kInvalidInput, "'" + feature.name + "' has no right angles: mark the corner of a box, or add its faces as planes."};
@@ -115,7 +106,52 @@ planning::WorldObject bodyOf(const WorldItem& item, double grown) {
   return body;
 }
 
+planning::Shape grownBy(const planning::Shape& shape, double grown) {
+  if (const auto* box = std::get_if<planning::Box>(&shape)) return planning::Box{box->size + Vector3d::Constant(2 * grown)};
+  if (const auto* c = std::get_if<planning::Cylinder>(&shape)) return planning::Cylinder{c->radius + grown, c->length + 2 * grown};
+  if (const auto* s = std::get_if<planning::Sphere>(&shape)) return planning::Sphere{s->radius + grown};
+  return shape;
+}
+
+std::vector<planning::WorldObject> partsOf(const WorldItem& item, double grown, bool without_moving) {
+  std::vector<planning::WorldObject> bodies;
+  for (const auto& part : item.parts) {
+    if (without_moving && part.moves) continue;
+    planning::WorldObject body = plainBody(item);
+    body.name = item.name + "." + part.name;
+    body.shape = grownBy(part.shape, grown);
+    body.X_WO = item.X_WO * part.X_TP;
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+bool sameParts(const planning::TemplatePart& a, const planning::TemplatePart& b) {
+  if (a.name != b.name || a.moves != b.moves || a.shape.index() != b.shape.index()) return false;
+  if (!sameBits(a.X_TP.matrix().reshaped(), b.X_TP.matrix().reshaped())) return false;
+  if (const auto* box = std::get_if<planning::Box>(&a.shape)) return sameBits(box->size, std::get<planning::Box>(b.shape).size);
+  if (const auto* s = std::get_if<planning::Sphere>(&a.shape)) return sameBits(s->radius, std::get<planning::Sphere>(b.shape).radius);
+  const auto &c = std::get<planning::Cylinder>(a.shape), &d = std::get<planning::Cylinder>(b.shape);
+  return sameBits(c.radius, d.radius) && sameBits(c.length, d.length);
+}
+
+bool sameTemplate(const WorldItem& a, const WorldItem& b) {
+  return a.template_name == b.template_name &&
+         std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(),
+                    [](const auto& x, const auto& y) { return x.first == y.first && sameBits(x.second, y.second); }) &&
+         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), sameParts);
+}
+
 }  // namespace
+
+double marginOf(const vision::Feature& feature) {
+  double worst = 0;
+  for (const auto& vertex : feature.vertices) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(vertex.covariance, Eigen::EigenvaluesOnly);
+    worst = std::max(worst, kNormal95 * std::sqrt(std::max(0.0, axes.eigenvalues()(2))));
+  }
+  return std::min(worst, kMostMargin_m);
+}
 
 const char* toString(WorldKind kind) {
   switch (kind) {
@@ -123,12 +159,13 @@ const char* toString(WorldKind kind) {
     case WorldKind::kSlab: return "slab";
     case WorldKind::kPipe: return "pipe";
     case WorldKind::kPoints: return "points";
+    case WorldKind::kTemplate: return "template";
   }
   return "box";
 }
 
 std::optional<WorldKind> worldKindFrom(const std::string& word) {
-  for (const WorldKind kind : {WorldKind::kBox, WorldKind::kSlab, WorldKind::kPipe, WorldKind::kPoints}) {
+  for (const WorldKind kind : {WorldKind::kBox, WorldKind::kSlab, WorldKind::kPipe, WorldKind::kPoints, WorldKind::kTemplate}) {
     if (word == toString(kind)) return kind;
   }
   return std::nullopt;
@@ -151,6 +188,15 @@ std::optional<WorldRole> worldRoleFrom(const std::string& word) {
   return std::nullopt;
 }
 
+namespace {
+
+bool sameBase(const std::optional<BaseState>& a, const std::optional<BaseState>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return sameBits(a->x, b->x) && sameBits(a->y, b->y) && sameBits(a->yaw, b->yaw);
+}
+
+}  // namespace
+
 bool operator==(const WorldItem& a, const WorldItem& b) {
   if (a.points.size() != b.points.size()) return false;
   for (std::size_t i = 0; i < a.points.size(); ++i) {
@@ -158,7 +204,8 @@ bool operator==(const WorldItem& a, const WorldItem& b) {
   }
   return a.id == b.id && a.kind == b.kind && a.name == b.name && a.parent == b.parent &&
          sameBits(a.X_WO.matrix().reshaped(), b.X_WO.matrix().reshaped()) && sameBits(a.size, b.size) &&
-         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.role == b.role && a.source == b.source;
+         sameBits(a.margin_m, b.margin_m) && a.hidden == b.hidden && a.role == b.role && a.source == b.source &&
+         sameTemplate(a, b) && sameBase(a.base, b.base);
 }
 
 std::uint64_t hashOf(const WorldItem& item) {
@@ -180,9 +227,17 @@ std::uint64_t hashOf(const WorldItem& item) {
   for (const auto& point : item.points) {
     for (int i = 0; i < 3; ++i) mixNumber(point(i));
   }
+  mix(std::hash<std::string>()(item.template_name));
+  for (const auto& [name, value] : item.parameters) {
+    mix(std::hash<std::string>()(name));
+    mixNumber(value);
+  }
   mixNumber(item.margin_m);
   mix((item.hidden ? 1U : 0U) | (static_cast<std::uint64_t>(item.role) << 1U));
   mix(item.source.value);
+  if (item.base) {
+    for (const double value : {item.base->x, item.base->y, item.base->yaw}) mixNumber(value);
+  }
   return hash;
 }
 
@@ -220,7 +275,9 @@ WorldItem worldPointsFrom(const std::vector<vision::Feature>& points) {
 
 Status checkWorldItem(const WorldItem& item) {
   const auto fail = [&](const std::string& what) { return Status{ErrorCode::kInvalidInput, "'" + item.name + "': " + what}; };
-  for (int i = 0; i < 3; ++i) {
+  const bool is_template = item.kind == WorldKind::kTemplate;
+  if (is_template == item.parts.empty()) return fail("it has no parts, or parts and no template.");
+  for (int i = 0; !is_template && i < 3; ++i) {
     if (item.size(i) >= kLeastSize_m && item.size(i) <= kMostSize_m) continue;
     return fail("a size of " + formatNumber(item.size(i)) + " m is outside " + formatNumber(kLeastSize_m) + " to " +
                 formatNumber(kMostSize_m) + " m.");
@@ -244,6 +301,7 @@ Status checkWorldItem(const WorldItem& item) {
 
 std::vector<planning::WorldObject> bodiesOf(const WorldItem& item, bool with_margin) {
   const double grown = with_margin ? (item.role == WorldRole::kWorkspace ? -item.margin_m : item.margin_m) : 0;
+  if (item.kind == WorldKind::kTemplate) return partsOf(item, grown, false);
   if (item.kind != WorldKind::kPoints) return {bodyOf(item, grown)};
   std::vector<planning::WorldObject> bodies;
   for (std::size_t i = 0; i < item.points.size(); ++i) {
@@ -256,12 +314,14 @@ std::vector<planning::WorldObject> bodiesOf(const WorldItem& item, bool with_mar
   return bodies;
 }
 
-std::vector<planning::WorldObject> obstaclesOf(const std::vector<WorldItem>& items, const std::string& frame, FeatureId skip) {
+std::vector<planning::WorldObject> obstaclesOf(const std::vector<WorldItem>& items, const std::string& frame, FeatureId skip,
+                                               WorldItemId carried) {
   std::vector<planning::WorldObject> all;
   for (const auto& item : items) {
     const bool handled = skip.valid() && item.source == skip && item.role == WorldRole::kObstacle;
     if (item.role == WorldRole::kDrawn || item.parent != frame || handled) continue;
-    for (auto& body : bodiesOf(item, true)) all.push_back(std::move(body));
+    const bool goes_along = carried.valid() && item.id == carried;
+    for (auto& body : goes_along ? partsOf(item, item.margin_m, true) : bodiesOf(item, true)) all.push_back(std::move(body));
   }
   return all;
 }
@@ -283,6 +343,12 @@ void addWorldItem(const WorldItem& item, const vision::View& view, vision::Overl
   look.filled = item.role != WorldRole::kWorkspace;   // everything is inside
   for (const auto& point : item.points) vision::addSphere(point, item.size.x() / 2, view, look, overlay);
   if (item.kind == WorldKind::kPoints) return;
+  for (const auto& body : partsOf(item, 0, false)) {
+    if (const auto* box = std::get_if<planning::Box>(&body.shape)) vision::addBox(body.X_WO, box->size, view, look, overlay);
+    if (const auto* c = std::get_if<planning::Cylinder>(&body.shape)) vision::addCylinder(body.X_WO, c->radius, c->length, view, look, overlay);
+    if (const auto* s = std::get_if<planning::Sphere>(&body.shape)) vision::addSphere(body.X_WO.translation(), s->radius, view, look, overlay);
+  }
+  if (item.kind == WorldKind::kTemplate) return;
   if (item.kind == WorldKind::kPipe) vision::addCylinder(item.X_WO, item.size.x() / 2, item.size.z(), view, look, overlay);
   else vision::addBox(item.X_WO, item.size, view, look, overlay);
 }

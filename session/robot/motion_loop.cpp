@@ -60,6 +60,16 @@ Status MotionLoop::checkAtPath(double tau) const {
               formatNumber(m_options.start_tolerance) + "); plan again from where the robot is"};
 }
 
+// A motion is a way through the world, not only of the joints.
+Status MotionLoop::checkBasePlace() const {
+  const auto now = m_base ? m_base->odometry() : nullptr;
+  if (!now || !m_loaded_at || samePlace(*now, *m_loaded_at)) return {};
+  const BaseShift shift = shiftBetween(*now, *m_loaded_at);
+  return {ErrorCode::kStale, "the base has moved by " + formatFixed(shift.way * 1000, 0) + " mm and " +
+                                 formatFixed(shift.turn * 180 / M_PI, 1) +
+                                 " deg since this motion was loaded; plan again"};
+}
+
 // Where a motion goes on: at the player's cursor when the arm stands there, else at the arm's own place on the
 // path, for the robot may have braked along it by itself.
 Status MotionLoop::takePlaceOnPath() {
@@ -85,6 +95,7 @@ Status MotionLoop::load(const Trajectory& trajectory, double at_s) {
     return status;
   }
   m_player.setSpeed(speed);
+  m_loaded_at = m_base ? m_base->odometry() : nullptr;
   auto status = at_s > 0 ? m_player.standAt(at_s) : Status();
   if (status) status = checkAtPath(at_s);
   if (!status) {
@@ -100,16 +111,23 @@ void MotionLoop::unload() {
   if (!isMoving(m_player.state())) m_player.clear();
 }
 
-Status MotionLoop::play() {
+Status MotionLoop::play(const PlayOrder& order) {
   std::lock_guard<std::mutex> lock(m_mutex);
   if (m_player.state() == PlayerState::kEmpty) return {ErrorCode::kRefused, "play: no motion is loaded"};
   if (m_gate.stopped()) return {ErrorCode::kRefused, "play: STOP is latched; reset it first"};
   if (m_stop_seen.load()) return {ErrorCode::kRefused, "play: the stop is still being carried out"};
+  if (auto status = checkBasePlace(); !status) return status;
   if (!isMoving(m_player.state())) {
     if (auto status = takePlaceOnPath(); !status) return status;
   }
   if (auto status = m_gate.acquire(kOwner); !status) return status;
-  m_player.play();
+  if (order.until_s) {
+    if (auto status = m_player.playUntil(*order.until_s); !status) return status;
+  } else {
+    m_player.play();
+  }
+  m_only_held = order.only_held;
+  keepRunning();
   m_notice.clear();
   return {};
 }
@@ -136,8 +154,16 @@ Trajectory MotionLoop::trajectory() const {
 
 MotionState MotionLoop::state() const {
   std::lock_guard<std::mutex> lock(m_mutex);
-  return {m_player.state(), m_player.cursor(),   m_player.duration(), m_player.rate(),
-          m_player.speed(), m_notice, m_jogger.active(m_clock.now_s()), m_jogger.report()};
+  return {m_player.state(),
+          m_player.cursor(),
+          m_player.armCursor(),
+          m_player.duration(),
+          m_player.rate(),
+          m_player.speed(),
+          m_notice,
+          m_jogger.active(m_clock.now_s()),
+          m_jogger.report(),
+          m_drive ? m_drive->state() : DriveState()};
 }
 
 Status MotionLoop::jog(const planning::JogCommand& command) {
@@ -155,6 +181,22 @@ Status MotionLoop::jog(const planning::JogCommand& command) {
 void MotionLoop::releaseJog() {
   std::lock_guard<std::mutex> lock(m_mutex);
   m_jogger.release();
+}
+
+void MotionLoop::setBase(std::shared_ptr<hardware::MobileBase> base, const BaseLimits& limits) {
+  m_gate.setBase(base, limits);
+  m_base = base;
+  m_drive = std::make_unique<BaseDrive>(std::move(base), m_gate, limits, m_clock, m_report);
+}
+
+Status MotionLoop::drive(const BaseTwist& wanted) {
+  if (!m_drive) return {ErrorCode::kRefused, "drive: this robot has no base that can be driven"};
+  if (m_stop_seen.load()) return {ErrorCode::kRefused, "drive: the stop is still being carried out"};
+  return m_drive->command(wanted);
+}
+
+void MotionLoop::releaseDrive() {
+  if (m_drive) m_drive->release();
 }
 
 void MotionLoop::setObstacles(const std::vector<planning::WorldObject>& objects) {
@@ -179,6 +221,7 @@ Horizon MotionLoop::jogHorizon() {
 
 void MotionLoop::tick() {
   watchGui();
+  watchHold();
   PlayerState now;
   Horizon horizon;
   {
@@ -195,6 +238,7 @@ void MotionLoop::tick() {
     }
   }
   if (!horizon.points.empty()) submit(horizon);
+  if (m_drive) m_drive->tick(guiAge() < m_options.gui_stop_jog_s);
   m_gate.watch();
   reportChange(std::exchange(m_last, now), now);
 }
@@ -202,7 +246,19 @@ void MotionLoop::tick() {
 void MotionLoop::watchGui() {
   const double age = guiAge();
   if (age < m_options.gui_stop_motion_s) return;
-  const std::string text = "the window has not answered for " + formatFixed(age, 1) + " s: motion paused";
+  pauseBecause("the window has not answered for " + formatFixed(age, 1) + " s: motion paused");
+}
+
+// A dead man's switch, as for jogging.
+void MotionLoop::watchHold() {
+  {
+    std::lock_guard<std::mutex> lock(m_mutex);
+    if (!m_only_held || m_clock.now_s() - m_held_s.load() < m_options.gui_stop_jog_s) return;
+  }
+  pauseBecause("Play is not held any more: motion paused");
+}
+
+void MotionLoop::pauseBecause(const std::string& text) {
   {
     std::lock_guard<std::mutex> lock(m_mutex);
     if (m_player.state() != PlayerState::kPlaying) return;

@@ -17,6 +17,8 @@
 #include "hardware/motion_gate.h"
 #include "planning/jog/jogger.h"
 #include "planning/player/player.h"
+#include "session/robot/base_drive.h"
+#include "session/robot/play_order.h"
 
 namespace longarm::session {
 
@@ -31,10 +33,11 @@ struct MotionLoopOptions {
 
 struct MotionState {
   planning::PlayerState player = planning::PlayerState::kEmpty;
-  double cursor = 0, duration = 0, rate = 0, speed = 1;
+  double cursor = 0, arm_cursor = 0, duration = 0, rate = 0, speed = 1;
   std::string notice;
   bool jogging = false;
   planning::JogReport jog;
+  DriveState drive;
 };
 
 /// Time comes from the clock that is given, so that a thread or a lockstep simulation drives it alike.
@@ -53,7 +56,8 @@ class MotionLoop {
   /// As RobotRuntime's functions of the same names.
   Status load(const Trajectory& trajectory, double at_s = 0);
   void unload();
-  Status play();
+  Status play(const PlayOrder& order = {});
+  void keepRunning() { m_held_s.store(m_clock.now_s()); }
   void pause();
   void setSpeed(double factor);
   Status scrub(double cursor_s);
@@ -61,6 +65,10 @@ class MotionLoop {
   MotionState state() const;
   Status jog(const planning::JogCommand& command);
   void releaseJog();
+  /// A robot that drives; call before the first tick.
+  void setBase(std::shared_ptr<hardware::MobileBase> base, const BaseLimits& limits);
+  Status drive(const BaseTwist& wanted);
+  void releaseDrive();
   void setObstacles(const std::vector<planning::WorldObject>& objects);
 
   void touchGui() { m_gui_s.store(m_clock.now_s()); }
@@ -76,9 +84,12 @@ class MotionLoop {
  private:
   double guiAge() const;
   Status checkAtPath(double tau) const;
+  Status checkBasePlace() const;
   Status takePlaceOnPath();
   Result<Eigen::VectorXd> measured() const;
   void watchGui();
+  void watchHold();
+  void pauseBecause(const std::string& text);
   Horizon jogHorizon();
   void submit(const Horizon& horizon);
   void haltWith(const std::string& kind, const std::string& source, const std::string& owner, const std::string& text);
@@ -92,11 +103,16 @@ class MotionLoop {
   const MotionLoopOptions m_options;
   const Report m_report;
   std::atomic<double> m_gui_s;
+  std::atomic<double> m_held_s{0};
   std::atomic<bool> m_stop_seen{false};
   planning::PlayerState m_last = planning::PlayerState::kEmpty;  // After the last tick; tick()'s thread only.
+  std::shared_ptr<hardware::MobileBase> m_base;                  // Null: none.
+  std::shared_ptr<const BaseState> m_loaded_at;                  // Where it stood when the motion was loaded.
+  std::unique_ptr<BaseDrive> m_drive;                            // Null: no base.
   mutable std::mutex m_mutex;  // Guards what follows; never held while something is sent.
   planning::Player m_player;
   planning::Jogger m_jogger;
+  bool m_only_held = false;  // The motion runs while keepRunning() is repeated.
   std::string m_notice;
 };
 

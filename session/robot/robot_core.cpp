@@ -131,6 +131,7 @@ void RobotCore::makeMotion() {
   m_gate = std::make_unique<hardware::MotionGate>(m_devices.arm, joints, m_workcell.arm_limits, m_clock,
                                                   m_options.gate, gateChecks(m_workcell));
   m_loop = std::make_unique<MotionLoop>(m_devices.arm, *m_gate, m_cell, m_clock, loopOptions(m_options), m_report);
+  if (m_devices.base && m_workcell.base) m_loop->setBase(m_devices.base, *m_workcell.base);
   m_gate->onStop([this](const std::string& source, const std::string& reason) {
     m_loop->noteStop();
     m_report("stop", source, reason);
@@ -140,6 +141,7 @@ void RobotCore::makeMotion() {
 std::vector<hardware::Device*> RobotCore::allDevices() const {
   std::vector<hardware::Device*> out;
   if (m_devices.arm) out.push_back(m_devices.arm.get());
+  if (m_devices.base) out.push_back(m_devices.base.get());
   if (m_devices.gripper) out.push_back(m_devices.gripper.get());
   for (const auto& [name, device] : m_devices.pan_tilts) out.push_back(device.get());
   for (const auto& [name, device] : m_devices.cameras) out.push_back(device.get());
@@ -197,6 +199,7 @@ void RobotCore::stop(const std::string& source, const std::string& reason) noexc
   m_gate->stop(source, reason);
   if (m_devices.gripper) m_devices.gripper->stop();
   for (const auto& [name, device] : m_devices.pan_tilts) device->stop();
+  for (const auto& [name, device] : m_devices.cameras) device->haltLens();
 }
 
 Status RobotCore::resetStop() {

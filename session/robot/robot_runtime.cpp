@@ -132,6 +132,16 @@ struct RobotRuntime::Impl {
 
   // What a call answers while no robot is connected.
   static Error noRobot() { return {ErrorCode::kDisconnected, "no robot is connected; restart it"}; }
+
+  Result<std::shared_ptr<hardware::Camera>> camera(const std::string& name) const {
+    const auto life = current();
+    if (!life) return noRobot();
+    const auto found = life->devices().cameras.find(name);
+    if (found == life->devices().cameras.end()) {
+      return Error{ErrorCode::kNotFound, "this robot has no camera \"" + name + "\""};
+    }
+    return found->second;
+  }
 };
 
 RobotRuntime::RobotRuntime() : m_impl(std::make_unique<Impl>()) {}
@@ -171,12 +181,18 @@ RuntimeStatus RobotRuntime::status() const {
   const auto motion = core->loop().state();
   out.player = motion.player;
   out.cursor = motion.cursor;
+  out.arm_cursor = motion.arm_cursor;
   out.duration = motion.duration;
   out.rate = motion.rate;
   out.speed = motion.speed;
   out.notice = motion.notice;
   out.jogging = motion.jogging;
   out.jog = motion.jog;
+  out.driving = motion.drive.driving;
+  out.drive_notice = motion.drive.notice;
+  if (core->devices().base) {
+    if (const auto odometry = core->devices().base->odometry()) out.base = *odometry;
+  }
   out.faults = core->faults();
   core->describeMotion(out);
   return out;
@@ -234,16 +250,20 @@ void RobotRuntime::unload() {
   if (const auto core = m_impl->current()) core->loop().unload();
 }
 
-Status RobotRuntime::play() {
+Status RobotRuntime::play(const PlayOrder& order) {
   const auto core = m_impl->current();
   if (!core) return Impl::noRobot();
   const auto link = core->link();
   auto status = link.state == LinkState::kUp
-                    ? core->loop().play()
+                    ? core->loop().play(order)
                     : Status{ErrorCode::kStale,
                              "play: the link is " + std::string(toString(link.state)) + ": " + link.text};
   m_impl->queue(status ? "play" : "refused", "operator", status ? "" : status.error().message);
   return status;
+}
+
+void RobotRuntime::keepRunning() {
+  if (const auto core = m_impl->current()) core->loop().keepRunning();
 }
 
 void RobotRuntime::pause() {
@@ -271,6 +291,16 @@ Status RobotRuntime::jog(const planning::JogCommand& command) {
 
 void RobotRuntime::releaseJog() {
   if (const auto core = m_impl->current()) core->loop().releaseJog();
+}
+
+Status RobotRuntime::drive(const BaseTwist& wanted) {
+  const auto core = m_impl->current();
+  if (!core) return Impl::noRobot();
+  return core->loop().drive(wanted);
+}
+
+void RobotRuntime::releaseDrive() {
+  if (const auto core = m_impl->current()) core->loop().releaseDrive();
 }
 
 void RobotRuntime::setObstacles(const std::vector<planning::WorldObject>& objects) {
@@ -349,13 +379,34 @@ Status RobotRuntime::streamCamera(const std::string& name, bool on) {
 }
 
 Status RobotRuntime::setZoom(const std::string& camera, double zoom01) {
-  const auto core = m_impl->current();
-  if (!core) return Impl::noRobot();
-  const auto found = core->devices().cameras.find(camera);
-  if (found == core->devices().cameras.end()) {
-    return {ErrorCode::kNotFound, "this robot has no camera \"" + camera + "\""};
-  }
-  return found->second->setZoom(zoom01);
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->setZoom(zoom01) : Status(device.error());
+}
+
+Result<std::optional<double>> RobotRuntime::zoomAt(const std::string& camera, double stamp_s) const {
+  const auto device = m_impl->camera(camera);
+  if (!device) return device.error();
+  if (!(*device)->zooms()) return std::optional<double>();
+  const auto zoom = (*device)->zoomAt(stamp_s);
+  if (!zoom) return zoom.error();
+  return std::optional<double>(*zoom);
+}
+
+Status RobotRuntime::setFocus(const std::string& camera, double focus01) {
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->setFocus(focus01) : Status(device.error());
+}
+
+Status RobotRuntime::focusItself(const std::string& camera) {
+  const auto device = m_impl->camera(camera);
+  return device ? (*device)->focusItself() : Status(device.error());
+}
+
+std::optional<double> RobotRuntime::focus(const std::string& camera) const {
+  const auto device = m_impl->camera(camera);
+  if (!device || !(*device)->zooms()) return {};
+  const auto focus = (*device)->focus();
+  return focus ? std::optional<double>(*focus) : std::nullopt;
 }
 
 void RobotRuntime::touchGui() {

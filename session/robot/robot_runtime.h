@@ -10,11 +10,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "core/base_motion.h"
 #include "core/clock.h"
 #include "core/motion.h"
 #include "core/result.h"
@@ -23,6 +25,7 @@
 #include "planning/jog/jogger.h"
 #include "planning/player/player.h"
 #include "planning/world/workcell.h"
+#include "session/robot/play_order.h"
 
 namespace longarm::session {
 
@@ -47,6 +50,7 @@ using ServiceCall = std::function<Result<std::string>(const std::string& service
 /// The devices of one robot.  Members may be null or empty where the workcell has none, except the arm.
 struct DeviceSet {
   std::shared_ptr<hardware::RobotArm> arm;
+  std::shared_ptr<hardware::MobileBase> base;
   std::shared_ptr<hardware::Gripper> gripper;
   std::map<std::string, std::shared_ptr<hardware::PanTilt>> pan_tilts;   ///< By PanTiltSpec::name.
   std::map<std::string, std::shared_ptr<hardware::Camera>> cameras;      ///< By CameraSpec::name.
@@ -88,11 +92,15 @@ struct RuntimeStatus {
   double state_age_s = -1;                         ///< Age of the newest joint state; < 0: none yet.
   planning::PlayerState player = planning::PlayerState::kEmpty;
   double cursor = 0, duration = 0;                 ///< Position on the loaded trajectory [s].
+  double arm_cursor = 0;  ///< Where the arm is on it; differs from cursor after scrub() [s].
   double rate = 0;                                 ///< d cursor / dt now.
   double speed = 1;                                ///< Wanted factor, -2 ... 2.
   hardware::GateStatus gate;
   bool jogging = false;                            ///< A jog is held, or the arm still moves by one.
   planning::JogReport jog;                         ///< What holds it back.
+  bool driving = false;                            ///< A drive is held, or the base still moves by one.
+  std::string drive_notice;                        ///< Why the last drive ended by itself.
+  std::optional<BaseState> base;                   ///< Newest odometry; empty: none, or no base.
   bool moving = false;                             ///< The commanded velocity is not zero.
   bool stop_confirmed = false;                     ///< STOP is latched and the measured joints stand still.
   double tracking_error = 0;                       ///< Largest |commanded - measured| [rad or m].
@@ -148,7 +156,8 @@ class RobotRuntime {
   void unload();
   /// Towards the end (or the start, at negative speed).  kStale as load(), kRefused when STOP is latched, the link is
   /// not up, or nothing is loaded.
-  Status play();
+  Status play(const PlayOrder& order = {});
+  void keepRunning();  ///< For PlayOrder::only_held, at least every 0.2 s.
   void pause();
   void setSpeed(double factor);
   Status scrub(double cursor_s);
@@ -160,6 +169,11 @@ class RobotRuntime {
   void releaseJog();                               ///< The arm comes to rest within 0.3 s.
   /// What a jog must not touch, in place of the workcell's objects.
   void setObstacles(const std::vector<planning::WorldObject>& objects);
+
+  /// Drives the base as long as this is repeated (at least every 0.2 s); the arm is held meanwhile.
+  /// @returns as BaseDrive::command().
+  Status drive(const BaseTwist& wanted);
+  void releaseDrive();
 
   /// STOP.  Latches; every motion ends at the STOP deceleration.  Any thread, no waiting.
   void stop(const std::string& source, const std::string& reason) noexcept;
@@ -176,6 +190,11 @@ class RobotRuntime {
   /// Starts or ends the pictures of one camera (each costs the robot and the link time).  kNotFound.
   Status streamCamera(const std::string& name, bool on);
   Status setZoom(const std::string& camera, double zoom01);
+  /// Setting of its zoom at a time on clock(); empty for a camera that has none.  kStale, kNotFound.
+  Result<std::optional<double>> zoomAt(const std::string& camera, double stamp_s) const;
+  Status setFocus(const std::string& camera, double focus01);
+  Status focusItself(const std::string& camera);   ///< Until the next setFocus().
+  std::optional<double> focus(const std::string& camera) const;   ///< As told last.
 
   /// The window is alive; called by its 30 Hz timer.
   void touchGui();

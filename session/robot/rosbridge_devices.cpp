@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hardware/drivers/rosbridge/rosbridge_arm.h"
+#include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
@@ -73,6 +74,8 @@ Result<DeviceSet> makeRosbridgeDevices(const planning::Workcell& workcell, const
   robot.state = std::make_shared<hardware::RobotState>(robot.link, topics.jointStates());
   robot.clock = &clock;
   set.arm = std::make_shared<hardware::RosbridgeArm>("arm", robot, topics);
+  if (workcell.base)
+    set.base = std::make_shared<hardware::RosbridgeBase>("base", robot, *workcell.base, topics);
   if (workcell.gripper) {
     const auto& spec = *workcell.gripper;
     set.gripper = std::make_shared<hardware::RosbridgeGripper>(
@@ -82,7 +85,7 @@ Result<DeviceSet> makeRosbridgeDevices(const planning::Workcell& workcell, const
   if (auto status = addPanTilts(workcell, robot, topics, set); !status) return status.error();
   for (const auto& spec : workcell.cameras) {
     hardware::CameraSettings camera;
-    camera.zooms = spec.role == "ptz";
+    camera.zooms = spec.zooms;
     set.cameras[spec.name] = std::make_shared<hardware::RosbridgeCamera>(spec.name, robot, camera, topics);
   }
   set.call_service = serviceCall(robot.link);

@@ -201,8 +201,9 @@ std::optional<StampedFrame> TaskRun::freshFrame(const std::string& camera, doubl
   const auto frame = m_runtime->cameraFrame(camera);
   if (!frame || frame->stamp_s < after_s) return std::nullopt;
   auto state = m_runtime->jointStateAt(frame->stamp_s);
-  if (!state) return std::nullopt;       // the state after it is still under way
-  return StampedFrame{frame, *state};
+  const auto zoom = m_runtime->zoomAt(camera, frame->stamp_s);
+  if (!state || !zoom) return std::nullopt;      // what comes after it is still under way
+  return StampedFrame{frame, *state, *zoom};
 }
 
 StageResult TaskRun::snapshot() {

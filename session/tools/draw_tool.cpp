@@ -12,6 +12,9 @@ namespace longarm::session {
 namespace {
 
 constexpr PaneSide kSides[] = {PaneSide::kLeft, PaneSide::kRight};
+// Outlines of a thin pipe, or ends of a short line, lie nearer to each other than the pick radius: while something is still to
+// be marked in a picture, only a press on the handle itself takes it.
+constexpr double kOnHandle = 0.5;          // of the pick radius
 
 ToolReply consumed(bool redraw = true) {
   ToolReply reply;
@@ -42,6 +45,7 @@ void DrawTool::deactivate() {
   m_drag.cancel();
   m_grab.reset();
   m_active = {};
+  m_note.clear();
   m_state = State::kNoPicture;
 }
 
@@ -159,15 +163,33 @@ ToolReply DrawTool::onPress(const Gesture& gesture) {
   m_drag.cancel();
   m_grab.reset();
   m_state = State::kPlacing;
-  if (!m_document->paneSnapshot(gesture.side)) {
+  m_note.clear();
+  const SnapshotPtr picture = m_document->paneSnapshot(gesture.side);
+  if (!picture) {
     m_filter.cancel();
     return {};
   }
-  const auto hit = hitItem(*m_document, m_item, gesture.side, gesture.pixel, gesture.tolerance_px);
-  // The body of a copy that is not placed yet is no hindrance to a stroke across it.
-  if (hit && (hit->handle.valid() || !nextUnplaced(gesture.side))) m_grab = hit->handle;
+  if (!isOnPicture(*picture, gesture.pixel) && !meantBy(gesture)) {
+    m_filter.cancel();
+    m_note = "That is off the picture: nothing was marked. Mark it where the picture shows it, or turn the camera there and take another.";
+    ToolReply reply;
+    reply.redraw = true;
+    return reply;
+  }
+  m_grab = meantBy(gesture);
   m_state = State::kGrabbed;
   return consumed(false);
+}
+
+std::optional<Handle> DrawTool::meantBy(const Gesture& press) const {
+  const auto hit = hitItem(*m_document, m_item, press.side, press.pixel, press.tolerance_px);
+  if (!hit) return std::nullopt;
+  if (!nextUnplaced(press.side)) return hit->handle;
+  // The body of a copy that is not placed yet is no hindrance to a stroke across it.
+  if (!hit->handle.valid()) return std::nullopt;
+  // An outline is drawn with a stroke, wherever its copy lies; other copies are there to be dragged.
+  if (!isPlaced(hit->handle)) return m_pipe ? std::nullopt : std::optional(hit->handle);
+  return hit->distance_px <= kOnHandle * press.tolerance_px ? std::optional(hit->handle) : std::nullopt;
 }
 
 ToolReply DrawTool::onClick(const Gesture& gesture) {
@@ -226,6 +248,7 @@ ToolReply DrawTool::onKey(vision::SketchKey key, const vision::KeyModifiers& mod
   if (key == vision::SketchKey::kEscape) return cancel();
   if (m_document == nullptr || m_state == State::kNoPicture) return {};
   if (m_state != State::kPlacing) return consumed(false);
+  m_note.clear();
   switch (key) {
     case vision::SketchKey::kDelete: return onDelete();
     case vision::SketchKey::kTab: return onTab(modifiers.shift);
@@ -316,6 +339,11 @@ void DrawTool::documentChanged() {
   refresh();
 }
 
+std::vector<const SketchItem*> DrawTool::drafts() const {
+  const SketchItem* item = draft();
+  return item == nullptr ? std::vector<const SketchItem*>{} : std::vector<const SketchItem*>{item};
+}
+
 const SketchItem* DrawTool::draft() const {
   if (m_document == nullptr || m_state == State::kNoPicture) return nullptr;
   return m_drag.active() ? &m_drag.item() : &m_item;
@@ -335,10 +363,8 @@ std::optional<LiveMeasure> DrawTool::liveMeasure() const {
 
 std::string DrawTool::hint() const {
   if (m_document == nullptr || m_state == State::kNoPicture) return "Take a pair of snapshots first, then mark it in both.";
-  if (!m_drag.active()) return placingHint();
-  if (m_drag.edit().released) return "Off the epipolar curve: the miss shows how far. Let go of Control to return to it.";
-  if (m_drag.edit().on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
-  return "Drag onto the feature; Esc cancels.";
+  if (m_drag.active()) return dragHint(m_drag.edit());
+  return m_note.empty() ? placingHint() : m_note;
 }
 
 std::string DrawTool::placingHint() const {

@@ -11,7 +11,9 @@ namespace longarm::session {
 
 /// Unplaced copies belong to the tool and are drawn dashed; the first gesture that places a vertex adds the item to
 /// the document, each later one replaces it.  Either picture may come first; in the other one handles slide along
-/// the epipolar curve unless Control is held; with Shift they snap to corners and edges.  When every vertex is placed in both pictures the tool has finished.
+/// the epipolar curve unless Control is held; with Shift they snap to corners and edges.  While vertices are to be placed
+/// in a picture a handle is taken by a press on itself only, so that strokes may begin beside it.  When every vertex is
+/// placed in both pictures the tool has finished.
 ///
 /// | state      | event                               | next       | answer                                         |
 /// |------------|-------------------------------------|------------|------------------------------------------------|
@@ -19,6 +21,7 @@ namespace longarm::session {
 /// | kNoPicture | a picture comes into a pane         | kPlacing   |                                                |
 /// | kPlacing   | hover over the other pane           | kPlacing   | its first unplaced vertex becomes active       |
 /// | kPlacing   | press in a pane with a picture      | kGrabbed   | consumed                                       |
+/// | kPlacing   | press off the picture               | kPlacing   | hint why nothing was marked; not consumed      |
 /// | kGrabbed   | click on a placed handle            | kPlacing   | makes it active                                |
 /// | kGrabbed   | click elsewhere                     | kPlacing   | command: the next vertex is placed there       |
 /// | kGrabbed   | drag begins on a handle             | kDragging  | that handle follows                            |
@@ -45,7 +48,7 @@ class DrawTool : public SketchTool {
   ToolReply onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) override;
   ToolReply cancel() override;
   void documentChanged() override;
-  const SketchItem* draft() const override;
+  std::vector<const SketchItem*> drafts() const override;
   vision::Overlay preview(PaneSide side) const override;
   Handle activeHandle() const override { return m_active; }
   void setActiveHandle(const Handle&) override {}
@@ -73,6 +76,9 @@ class DrawTool : public SketchTool {
   ToolReply onTab(bool backwards);
   ToolReply onDelete();
   bool beginDrag(const Gesture& gesture);
+  /// What a press takes hold of: a handle, the body (vertex < 0), or nothing, which begins the next stroke.
+  std::optional<Handle> meantBy(const Gesture& press) const;
+  const SketchItem* draft() const;
   ToolReply commit(SketchItem after, const std::string& label, const std::string& merge_key = {});
   void refresh();
   std::vector<Handle> handles() const;
@@ -92,6 +98,7 @@ class DrawTool : public SketchTool {
   std::optional<Handle> m_grab;            // vertex < 0: the body.
   PickDrag m_drag;
   Handle m_active;
+  std::string m_note;                      // Replaces the hint until the next press or key.
 };
 
 }  // namespace longarm::session

@@ -3,6 +3,8 @@
 /// @file
 /// MeasureTool: distance between two vertices, or the angle at the second of three.
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "session/document/dimension.h"
@@ -11,7 +13,7 @@
 
 namespace longarm::session {
 
-/// Writes nothing.  Vertices of any features, in either picture.
+/// Writes nothing.  Vertices of any features, in either picture or in the scene.
 ///
 /// | state    | event              | next     | answer                                            |
 /// |----------|--------------------|----------|---------------------------------------------------|
@@ -34,17 +36,20 @@ class MeasureTool final : public SketchTool {
   ToolReply onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) override;
   ToolReply cancel() override;
   void documentChanged() override;
-  const SketchItem* draft() const override { return nullptr; }
+  std::vector<const SketchItem*> drafts() const override { return {}; }
   vision::Overlay preview(PaneSide side) const override;
   Handle activeHandle() const override { return {}; }
   void setActiveHandle(const Handle&) override {}
   bool busy() const override { return false; }
   std::optional<LiveMeasure> liveMeasure() const override { return std::nullopt; }
+  std::optional<SceneDimension> dimension() const override;
+  ToolReply onVertex(const VertexRef& vertex) override;
   std::string hint() const override;
 
  private:
   std::string nameOf(const VertexRef& ref) const;
-  Result<Dimension> dimension() const;
+  Result<Dimension> measured() const;
+  std::optional<Eigen::Vector2d> placeIn(const vision::Snapshot& picture, const VertexRef& ref) const;
 
   const Document* m_document = nullptr;
   GestureFilter m_filter;

@@ -18,6 +18,8 @@ namespace longarm::session {
 
 namespace {
 
+constexpr double kOffPicture_px = 1;       // Beyond the outer pixels.
+
 Eigen::Vector2d keptOnPicture(const vision::Snapshot& snapshot, const Eigen::Vector2d& pixel) {
   const int width = snapshot.view.camera.width > 0 ? snapshot.view.camera.width : snapshot.image.cols;
   const int height = snapshot.view.camera.height > 0 ? snapshot.view.camera.height : snapshot.image.rows;
@@ -91,6 +93,17 @@ std::optional<vision::EpipolarCurve> curveBetween(const vision::Snapshot& from, 
 }
 
 }  // namespace
+
+bool isOnPicture(const vision::Snapshot& snapshot, const Eigen::Vector2d& pixel) {
+  return (keptOnPicture(snapshot, pixel) - pixel).norm() <= kOffPicture_px;
+}
+
+std::string dragHint(const PickEdit& edit) {
+  if (edit.off_picture) return "The picture ends here: what lies beyond it cannot be marked. Esc cancels; turn the camera there and take another.";
+  if (edit.released) return "Off the epipolar curve: the miss shows how far. Let go of Control to return to it.";
+  if (edit.on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
+  return "Drag onto the feature; Esc cancels.";
+}
 
 SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex) {
   if (item.pipe) return {};
@@ -171,6 +184,7 @@ PickEdit PickEditor::moveTo(const std::vector<Eigen::Vector2d>& wanted, bool rel
     const auto curve = m_curves.find(vertex);
     SketchPick pick{keptOnPicture(*picture, wanted[i]), held ? PickState::kReleased : PickState::kFree};
     if (i == 0) edit.raw = pick.pixel;
+    if (i == 0) edit.off_picture = (wanted[i] - pick.pixel).norm() > kOffPicture_px;
     if (held && !release && curve != m_curves.end()) {
       const auto nearest = curve->second.nearest(pick.pixel);
       if (nearest) {
@@ -302,11 +316,13 @@ LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, cons
   }
   const SnapshotPtr from = document.snapshot(constrainingSnapshot(document, item, handle.snapshot, handle.vertex));
   if (live.xyz && from) live.depth = (from->view.X_WC.inverse() * *live.xyz).z();
-  if (live.xyz && !live.length) live.reason.clear();
+  live.refused = !measurement.feature && item.markedTwice();
+  if (live.xyz && !live.length && !live.refused) live.reason.clear();
   return live;
 }
 
 std::string LiveMeasure::text() const {
+  if (refused) return "Not measured: " + reason;
   if (!xyz) return reason;
   std::string line = "x " + formatFixed(xyz->x() * 1000, 1) + "  y " + formatFixed(xyz->y() * 1000, 1) + "  z " +
                      formatFixed(xyz->z() * 1000, 1) + " \u00b1 " + formatFixed(plus_minus * 1000, 1) +

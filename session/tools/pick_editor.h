@@ -21,6 +21,7 @@ struct PickEdit {
   Eigen::Vector2d constrained = Eigen::Vector2d::Zero();  ///< Granted [raw px].
   bool on_curve = false;
   bool released = false;
+  bool off_picture = false;                               ///< Asked for beyond the border.
   std::optional<double> depth;                            ///< z in the camera of the constraining pick [m].
   std::optional<vision::SnapKind> snapped;                ///< What of the picture drew it there.
 };
@@ -82,6 +83,11 @@ class PickEditor {
 /// Numbers of a vertex of an item value; `edit` adds where it was asked for.
 LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, const Handle& handle,
                           const PickEdit* edit = nullptr);
+
+/// Whether a pixel lies on the picture, or within a pixel of it.
+bool isOnPicture(const vision::Snapshot& snapshot, const Eigen::Vector2d& pixel);
+/// What a drag does now, and how to leave it.
+std::string dragHint(const PickEdit& edit);
 
 /// Epipolar curve, depth ticks and miss line of the handle's vertex in the picture of this pane.
 vision::Overlay handlePreview(const Document& document, const SketchItem& item, const Handle& handle, PaneSide side);

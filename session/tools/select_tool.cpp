@@ -36,7 +36,7 @@ void SelectTool::activate(const Document& document) {
 
 void SelectTool::deactivate() {
   m_filter.cancel();
-  m_drag.cancel();
+  endDrag();
   m_grab.reset();
   m_band.reset();
   m_active = m_moved = {};
@@ -88,7 +88,7 @@ ToolReply SelectTool::onHover(const Gesture& gesture) {
 }
 
 ToolReply SelectTool::onPress(const Gesture& gesture) {
-  m_drag.cancel();
+  endDrag();
   m_state = State::kIdle;
   m_note.clear();
   m_band.reset();
@@ -164,20 +164,53 @@ ToolReply SelectTool::onBandEnd(const Gesture& gesture) {
   return reply;
 }
 
-// The others of the group go the same way in this picture.
-CommandPtr SelectTool::movedGroup(const SketchItem& moved, const Gesture& gesture) const {
-  std::vector<CommandPtr> commands;
-  commands.push_back(replaceItem(*m_document, moved, "Move"));
+std::vector<FeatureId> SelectTool::movedWith(FeatureId id, bool alone) const {
+  std::vector<FeatureId> ids = withGroup(id, alone);
+  if (alone || !m_document->selection().contains(id)) return ids;
+  for (const FeatureId selected : m_document->selection().items) {
+    for (const FeatureId each : withGroup(selected, false)) {
+      if (std::find(ids.begin(), ids.end(), each) == ids.end()) ids.push_back(each);
+    }
+  }
+  return ids;
+}
+
+bool SelectTool::wholeIsGrabbed(const Gesture& gesture) const {
+  if (!m_grab->handle.valid()) return true;
+  const SketchItem* item = m_document->item(m_grab->handle.item);
+  return item->vertices() == 1 && movedWith(item->id, gesture.modifiers.alt).size() > 1;
+}
+
+void SelectTool::beginCompanions(const Gesture& gesture) {
+  m_companions.clear();
+  const FeatureId leader = m_grab->handle.item;
   const SnapshotId shown = m_document->paneSnapshotId(gesture.side);
-  for (const FeatureId id : withGroup(moved.id, gesture.modifiers.alt)) {
+  for (const FeatureId id : movedWith(leader, gesture.modifiers.alt)) {
     const SketchItem& other = *m_document->item(id);
     const std::vector<int> vertices = verticesIn(other, shown);
-    if (id == moved.id || other.locked || vertices.empty()) continue;
-    const PickEditor editor(*m_document, other, shown, vertices);
-    commands.push_back(replaceItem(*m_document, editor.moveBy(gesture.travel(), gesture.modifiers.control).item, "Move"));
+    if (id == leader || other.locked || other.hidden || vertices.empty()) continue;
+    m_companions.push_back({PickEditor(*m_document, other, shown, vertices), other});
   }
-  const std::string what = commands.size() > 1 ? "group of " : std::string(wordFor(moved)) + " ";
+}
+
+void SelectTool::endDrag() {
+  m_drag.cancel();
+  m_companions.clear();
+}
+
+CommandPtr SelectTool::movedTogether(const SketchItem& moved) {
+  std::vector<CommandPtr> commands;
+  commands.push_back(replaceItem(*m_document, moved, "Move"));
+  for (const Companion& companion : m_companions) commands.push_back(replaceItem(*m_document, companion.item, "Move"));
+  const std::string what = commands.size() > 1 ? std::to_string(commands.size()) + " features with " : std::string(wordFor(moved)) + " ";
   return composite("Move " + what + quoted(moved), std::move(commands));
+}
+
+void SelectTool::moveDrag(const Gesture& gesture) {
+  m_drag.move(gesture, pictures());
+  for (Companion& companion : m_companions) {
+    companion.item = companion.editor.moveBy(gesture.travel(), gesture.modifiers.control).item;
+  }
 }
 
 ToolReply SelectTool::onDrag(const Gesture& gesture) {
@@ -191,10 +224,12 @@ ToolReply SelectTool::onDrag(const Gesture& gesture) {
       return consumed();
     }
     m_drag.begin(*m_document, *item, m_grab->handle);
+    m_companions.clear();
+    if (wholeIsGrabbed(gesture)) beginCompanions(gesture);
     m_active = m_drag.handle();
     m_state = State::kDragging;
   }
-  m_drag.move(gesture, pictures());
+  moveDrag(gesture);
   ToolReply reply = consumed();
   if (!m_document->selection().contains(m_active.item)) {
     const auto taken = withGroup(m_active.item, gesture.modifiers.alt);
@@ -206,18 +241,21 @@ ToolReply SelectTool::onDrag(const Gesture& gesture) {
 ToolReply SelectTool::onDragEnd(const Gesture& gesture) {
   if (m_state == State::kBand) return onBandEnd(gesture);
   if (m_state != State::kDragging) return {};
-  m_drag.move(gesture, pictures());
+  moveDrag(gesture);
   SketchItem after = m_drag.finish();
   m_state = State::kIdle;
   ToolReply reply = consumed();
   const SketchItem* before = m_document->item(after.id);
-  if (before == nullptr || *before == after) return reply;
-  const bool whole = m_grab && !m_grab->handle.valid();
-  if (!whole) m_moved = m_active;
-  if (whole) {
-    reply.command = movedGroup(after, gesture);
+  if (before == nullptr || *before == after) {
+    m_companions.clear();
     return reply;
   }
+  if (!m_companions.empty() || (m_grab && !m_grab->handle.valid())) {
+    reply.command = movedTogether(after);
+    m_companions.clear();
+    return reply;
+  }
+  m_moved = m_active;
   const std::string label = std::string("Move handle of ") + wordFor(after) + " " + quoted(after);
   reply.command = replaceItem(*m_document, std::move(after), label);
   return reply;
@@ -288,7 +326,7 @@ ToolReply SelectTool::onDelete() {
 ToolReply SelectTool::cancel() {
   m_filter.cancel();
   if (m_state != State::kIdle) {
-    m_drag.cancel();
+    endDrag();
     m_band.reset();
     m_state = State::kIdle;
     return consumed();
@@ -307,9 +345,10 @@ void SelectTool::documentChanged() {
                              m_document->paneSnapshotId(m_drag.handle().side) != m_drag.handle().snapshot;
   if (gone || other_picture) {
     m_filter.cancel();
-    m_drag.cancel();
+    endDrag();
     m_state = State::kIdle;
   }
+  m_companions.remove_if([this](const Companion& each) { return m_document->item(each.item.id) == nullptr; });
   if (m_active.valid() && !exists(m_active)) m_active = {};
 }
 
@@ -333,7 +372,13 @@ ToolReply SelectTool::acceptMatch(const MatchHelp& help) {
   return reply;
 }
 
-const SketchItem* SelectTool::draft() const { return m_drag.active() ? &m_drag.item() : nullptr; }
+std::vector<const SketchItem*> SelectTool::drafts() const {
+  std::vector<const SketchItem*> items;
+  if (!m_drag.active()) return items;
+  for (const Companion& companion : m_companions) items.push_back(&companion.item);
+  items.push_back(&m_drag.item());
+  return items;
+}
 
 vision::Overlay SelectTool::preview(PaneSide side) const {
   if (m_band) return bandPreview(*m_band, side);
@@ -349,13 +394,13 @@ std::optional<LiveMeasure> SelectTool::liveMeasure() const {
 }
 
 std::string SelectTool::hint() const {
-  if (m_drag.active()) {
-    if (m_drag.edit().released) return "Off the epipolar curve: the miss shows how far. Let go of Control to return to it.";
-    if (m_drag.edit().on_curve) return "Slides along the epipolar curve. Hold Control to leave it; Esc to cancel.";
-    return "Drag onto the feature; Esc cancels.";
-  }
+  if (m_drag.active()) return dragHint(m_drag.edit());
   if (m_band) return "Let go to select what has a handle in the frame; with Shift it is added.";
   if (!m_note.empty()) return m_note;
+  const SketchItem* chosen = m_document == nullptr ? nullptr : m_document->item(m_document->selection().primary);
+  if (chosen != nullptr && chosen->markedTwice() && !m_document->measurement(chosen->id).feature) {
+    return quoted(*chosen) + " is not measured: " + m_document->measurement(chosen->id).reason;
+  }
   if (m_active.valid()) return "Arrow keys move the handle 0.1 px, with Shift 1 px; Tab goes to the next handle.";
   if (m_document != nullptr && !m_document->selection().items.empty()) {
     return "Choose a macro, drag a handle, or press Tab to work with the keys.";

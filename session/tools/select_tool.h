@@ -3,6 +3,11 @@
 /// @file
 /// SelectTool: the default.  Selects, drags a handle or a whole feature, nudges, deletes.
 
+#include <list>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "session/commands/sketch_commands.h"
 #include "session/tools/gesture_filter.h"
 #include "session/tools/hit_test.h"
@@ -31,7 +36,8 @@ namespace longarm::session {
 /// | kIdle     | Tab                           | kIdle     | next handle of the primary selection         |
 /// | kIdle     | Delete                        | kIdle     | one command: removes what is selected        |
 ///
-/// A group is selected and moved as one; Alt takes the single feature out of it.
+/// A group is selected and moved as one, and so is what is selected when one of it is dragged; Alt takes the single feature out
+/// of it.  A point among others is dragged as a whole by its handle: it has nothing else.
 class SelectTool final : public SketchTool {
  public:
   enum class State { kIdle, kGrabbed, kDragging, kBand };
@@ -44,7 +50,7 @@ class SelectTool final : public SketchTool {
   ToolReply onKey(vision::SketchKey key, const vision::KeyModifiers& modifiers) override;
   ToolReply cancel() override;
   void documentChanged() override;
-  const SketchItem* draft() const override;
+  std::vector<const SketchItem*> drafts() const override;
   vision::Overlay preview(PaneSide side) const override;
   Handle activeHandle() const override { return m_active; }
   void setActiveHandle(const Handle& handle) override;
@@ -65,8 +71,14 @@ class SelectTool final : public SketchTool {
   ToolReply onDelete();
   ToolReply onBand(const Gesture& gesture);
   ToolReply onBandEnd(const Gesture& gesture);
-  CommandPtr movedGroup(const SketchItem& moved, const Gesture& gesture) const;
+  /// Takes what moves along: the rest of the group and of the selection.
+  void beginCompanions(const Gesture& gesture);
+  CommandPtr movedTogether(const SketchItem& moved);
+  bool wholeIsGrabbed(const Gesture& gesture) const;
+  void moveDrag(const Gesture& gesture);
+  void endDrag();
   std::vector<FeatureId> withGroup(FeatureId id, bool alone) const;
+  std::vector<FeatureId> movedWith(FeatureId id, bool alone) const;
   bool exists(const Handle& handle) const;
   std::vector<Handle> handlesOf(FeatureId id) const;
 
@@ -75,6 +87,11 @@ class SelectTool final : public SketchTool {
   State m_state = State::kIdle;
   std::optional<Hit> m_grab;
   PickDrag m_drag;
+  struct Companion {
+    PickEditor editor;
+    SketchItem item;
+  };
+  std::list<Companion> m_companions;       // Of a whole feature that is dragged.
   std::optional<Gesture> m_band;           // From its press to where the pointer is.
   Handle m_active;
   Handle m_moved;                          // Dragged last; a match may help in the other picture.

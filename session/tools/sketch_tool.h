@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "session/commands/edit_command.h"
+#include "session/document/dimension.h"
 #include "session/document/document.h"
 #include "vision/match/suggest.h"
 #include "vision/sketch/pointer_event.h"
@@ -52,7 +54,8 @@ struct LiveMeasure {
   std::optional<double> length, length_plus_minus;        ///< Lines whose two ends are measured; +- 95 % [m].
   std::optional<double> radius, radius_plus_minus;        ///< Measured pipes; +- 95 % [m].
   std::optional<vision::Feature> feature;                 ///< All of it, when it is measured.
-  std::string reason;                                     ///< Why there is no xyz.
+  std::string reason;                                     ///< Why there is no xyz, or no feature.
+  bool refused = false;                                   ///< Everything is marked, and does not determine the feature.
   std::vector<std::string> warnings;
 
   /// One line for a status bar: "x 812.0  y -35.2  z 410.9 mm ± 3.1   miss 0.4 mm   length 402.1 ± 1.3 mm".
@@ -80,6 +83,14 @@ struct MatchHelp {
   bool offered() const { return !matches.empty() && matches.front().score > vision::kOfferScore; }
 };
 
+/// A measured way through the scene, and what it measures.
+struct SceneDimension {
+  std::vector<Eigen::Vector3d> points;                    ///< In the views' parent frame [m]; one: only its first end is known.
+  std::string text;                                       ///< Empty as long as nothing is measured.
+
+  friend bool operator==(const SceneDimension& a, const SceneDimension& b) { return a.points == b.points && a.text == b.text; }
+};
+
 class MatchPictures;
 
 /// Knows no Qt.  Reads the document that activate() gave it and never writes it: a gesture ends in one command.
@@ -98,9 +109,9 @@ class SketchTool {
   /// The document changed under the tool (undo, deletion): handles that are gone are let go.
   virtual void documentChanged() = 0;
 
-  /// The provisional item that stands for the document's one of the same id; null: none.
-  virtual const SketchItem* draft() const = 0;
-  /// Beyond sketch and draft: epipolar curve, depth ticks, miss line.  Pure function of the state.
+  /// Provisional items that stand for the document's of the same ids, or are not in it yet; valid until the next event.
+  virtual std::vector<const SketchItem*> drafts() const = 0;
+  /// Beyond sketch and drafts: epipolar curve, depth ticks, miss line.  Pure function of the state.
   virtual vision::Overlay preview(PaneSide side) const = 0;
   /// The handle that keys act on; invalid when there is none.
   virtual Handle activeHandle() const = 0;
@@ -109,6 +120,10 @@ class SketchTool {
   /// Whether a drag is going on.
   virtual bool busy() const = 0;
   virtual std::optional<LiveMeasure> liveMeasure() const = 0;
+  /// What it measures, for the scene; empty: nothing.
+  virtual std::optional<SceneDimension> dimension() const { return std::nullopt; }
+  /// A vertex picked in the scene.
+  virtual ToolReply onVertex(const VertexRef& /*vertex*/) { return {}; }
   /// Status text for the state.
   virtual std::string hint() const = 0;
   /// For which vertices a match would help now; none while dragging.

@@ -1,6 +1,7 @@
 #include "session/tools/tool_host.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "session/tools/match_help.h"
@@ -86,19 +87,71 @@ void ToolHost::announce() {
 vision::Overlay ToolHost::overlay(PaneSide side, const OverlayOptions& options) const {
   OverlayOptions all = options;
   const Handle active = m_tool->activeHandle();
-  all.draft = m_tool->draft();
+  all.drafts = m_tool->drafts();
   all.active_item = active.item;
   all.active_vertex = active.vertex;
   all.active_snapshot = active.snapshot;
-  vision::Overlay overlay = m_tool->preview(side);
+  vision::Overlay overlay;
+  addOwnLinks(side, &overlay);
+  vision::Overlay preview = m_tool->preview(side);
+  overlay.shapes.insert(overlay.shapes.end(), std::make_move_iterator(preview.shapes.begin()),
+                        std::make_move_iterator(preview.shapes.end()));
   addMatchHelp(matchHelp(), m_document.paneSnapshotId(side), &overlay);
   vision::Overlay sketch = buildOverlay(m_document, m_document.paneSnapshotId(side), all);
   overlay.shapes.insert(overlay.shapes.end(), std::make_move_iterator(sketch.shapes.begin()),
                         std::make_move_iterator(sketch.shapes.end()));
+  addPicksOnRobot(side, &overlay);
   return overlay;
 }
 
+void ToolHost::setOwnLinksShown(bool shown) {
+  m_own_links_shown = shown;
+  announce();
+}
+
+void ToolHost::addOwnLinks(PaneSide side, vision::Overlay* overlay) const {
+  const auto links = m_own_links_shown ? m_own_links->of(m_document.paneSnapshot(side), m_document.workcell()) : nullptr;
+  if (links) overlay->shapes.insert(overlay->shapes.end(), links->areas.begin(), links->areas.end());
+}
+
+void ToolHost::addPicksOnRobot(PaneSide side, vision::Overlay* overlay) const {
+  const SnapshotPtr picture = m_document.paneSnapshot(side);
+  const auto links = m_own_links->of(picture, m_document.workcell());
+  if (!links) return;
+  const auto drafts = m_tool->drafts();
+  const auto add = [&](const SketchItem& item) {
+    for (int vertex = 0; vertex < item.vertices(); ++vertex) {
+      const SketchPick* pick = item.pick(picture->id, vertex);
+      const std::string link = pick != nullptr && pick->placed() ? links->linkAt(pick->pixel) : std::string();
+      if (link.empty()) continue;
+      overlay->shapes.push_back({vision::OverlayShape::Kind::kText, vision::OverlayRole::kWarning, {pick->pixel}, "robot: " + link});
+    }
+  };
+  for (const auto& item : m_document.items()) {
+    const bool drafted = std::any_of(drafts.begin(), drafts.end(), [&](const SketchItem* draft) { return draft->id == item.id; });
+    if (!item.hidden && !drafted) add(item);
+  }
+  for (const SketchItem* draft : drafts) add(*draft);
+}
+
+// Of the handle that is worked on.
+std::string ToolHost::onRobotHint() const {
+  const Handle active = m_tool->activeHandle();
+  const SketchItem* item = m_document.item(active.item);
+  for (const SketchItem* draft : m_tool->drafts()) {
+    if (draft->id == active.item) item = draft;
+  }
+  const SketchPick* pick = item == nullptr ? nullptr : item->pick(active.snapshot, active.vertex);
+  if (pick == nullptr || !pick->placed()) return {};
+  const auto links = m_own_links->of(m_document.snapshot(active.snapshot), m_document.workcell());
+  const std::string link = links ? links->linkAt(pick->pixel) : std::string();
+  if (link.empty()) return {};
+  return "This is the robot's own " + link + ": it hides what lies behind it, and moves with the robot. Y shows the clearest view.";
+}
+
 std::string ToolHost::hint() const {
+  const std::string on_robot = onRobotHint();
+  if (!on_robot.empty()) return on_robot;
   const std::string help = matchHint(matchHelp());
   return help.empty() ? m_tool->hint() : help;
 }

@@ -11,6 +11,7 @@
 #include "session/commands/edit_history.h"
 #include "session/document/overlay_builder.h"
 #include "session/tools/match_pictures.h"
+#include "session/tools/own_links.h"
 #include "session/tools/sketch_tool.h"
 
 namespace longarm::session {
@@ -49,7 +50,18 @@ class ToolHost {
   std::vector<MatchHelp> matchHelp() const;
   /// Pictures in floats, for snapping and matching; may be shared with jobs.
   const std::shared_ptr<MatchPictures>& pictures() const { return m_pictures; }
+  /// Where pictures show the robot itself; may be asked for others, too.
+  OwnLinksCache& ownLinks() const { return *m_own_links; }
+  /// Whether they are tinted there.  A pick that lands on a link is told in any case.
+  void setOwnLinksShown(bool shown);
+  bool ownLinksShown() const { return m_own_links_shown; }
+  /// What the tool measured, to be shown in the scene.
+  std::optional<SceneDimension> dimension() const { return m_tool->dimension(); }
+  /// A vertex was picked elsewhere than in a picture.  @returns whether the tool used it.
+  bool takeVertex(const VertexRef& vertex) { return handle(m_tool->onVertex(vertex)); }
   std::optional<LiveMeasure> liveMeasure() const;
+  /// What is being drawn or dragged, as SketchTool::drafts().
+  std::vector<const SketchItem*> drafts() const { return m_tool->drafts(); }
   Handle activeHandle() const;
   /// A drag is going on: undo and other edits wait until it ends.
   bool busy() const;
@@ -57,10 +69,15 @@ class ToolHost {
  private:
   bool handle(ToolReply reply);
   void announce();
+  void addOwnLinks(PaneSide side, vision::Overlay* overlay) const;
+  void addPicksOnRobot(PaneSide side, vision::Overlay* overlay) const;
+  std::string onRobotHint() const;
 
   Document& m_document;
   EditHistory& m_history;
   std::shared_ptr<MatchPictures> m_pictures = std::make_shared<MatchPictures>();
+  std::unique_ptr<OwnLinksCache> m_own_links = std::make_unique<OwnLinksCache>();
+  bool m_own_links_shown = true;
   std::unique_ptr<SketchTool> m_tool;
   std::vector<MatchHelp> m_help;
   Callbacks m_callbacks;

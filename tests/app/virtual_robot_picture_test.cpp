@@ -221,8 +221,32 @@ TEST(VirtualPictures, ZoomMakesThePipeLarger) {
   const double factor = studio.rig().lens("ptz_left").fx / studio.rig().lens("ptz_right").fx;
   EXPECT_GT(factor, 1.3);
   EXPECT_GT(cv::countNonZero(magenta(studio.take("ptz_left")) > 60), 1.3 * wide);
+  EXPECT_EQ(studio.rig().mount("ptz_right").translation().norm(), 0) << "at the wide end the lens sits in its link";
+  EXPECT_GT(studio.rig().mount("ptz_left").translation().z(), 0.003) << "its entrance pupil moves ahead";
   EXPECT_FALSE(studio.rig().setZoom("ptz_left", -0.1).ok());
   EXPECT_EQ(studio.rig().setZoom("wrist", 0.1).error().code, ErrorCode::kNotFound);
+}
+
+TEST(VirtualPictures, WhatIsOutOfFocusIsBlurred) {
+  Studio studio(*planning::loadScenario("grab_pipe"), "ptz");
+  auto& rig = studio.rig();
+  const auto detail = [&](double blur_px) {
+    PictureOrder order{"ptz_left", rig.lens("ptz_left")};
+    order.blur_px = blur_px;
+    cv::Mat grey, edges;
+    cv::cvtColor(*studio.maker().render(studio.body().snapshot(), order), grey, cv::COLOR_BGR2GRAY);
+    cv::Laplacian(grey, edges, CV_64F);
+    return cv::mean(edges.mul(edges))[0];
+  };
+  rig.see("ptz_left", 1.0);
+  EXPECT_LT(rig.blur_px("ptz_left", 1.0), 1e-9) << "it focuses by itself at first";
+  ASSERT_TRUE(rig.setFocus("ptz_left", 0).ok());
+  for (int i = 0; i < 400; ++i) rig.tick(0.005);
+  const double blur = rig.blur_px("ptz_left", 1.0);
+  EXPECT_GT(blur, 0.5);
+  EXPECT_LT(detail(blur), 0.8 * detail(0));
+  EXPECT_EQ(rig.blur_px("wrist", 1.0), 0);
+  EXPECT_FALSE(rig.setFocus("ptz_left", 1.5).ok());
 }
 
 TEST(VirtualPictures, EveryCameraSeesSomething) {

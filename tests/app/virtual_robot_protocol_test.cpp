@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/virtual_robot/camera_rig.h"
 #include "app/virtual_robot/virtual_robot.h"
+#include "planning/world/workcell.h"
 #include "tests/app/virtual_robot_rig.h"
 #include "tests/support/fuzz.h"
 
@@ -311,6 +313,33 @@ TEST(VirtualProtocol, PtzCamerasZoomAndSaySo) {
   EXPECT_NEAR(states.back()["data"].get<double>(), 0.5, 1e-6);
   s.publish("/camera/ptz_left/zoom", {{"data", 1.5}});
   EXPECT_NE(s.told().find("1.5"), std::string::npos);
+}
+
+TEST(VirtualProtocol, PtzCamerasFocusByHand) {
+  RobotOptions options = Session::lockstep();
+  options.variant = "ptz";
+  Session s(options);
+  s.subscribe("/camera/ptz_left/focus_state");
+  s.publish("/camera/ptz_left/focus", {{"data", 0.1}});
+  s.step(2);
+  const auto focus = [&] { return s.on("/camera/ptz_left/focus_state").back()["data"].get<double>(); };
+  ASSERT_FALSE(s.on("/camera/ptz_left/focus_state").empty());
+  EXPECT_NEAR(focus(), 0.1, 1e-6);
+}
+
+TEST(CameraRig, FocusesByItselfOnWhatItsPictureShows) {
+  auto rig = CameraRig::load(*planning::loadBuiltInWorkcell("ptz"));
+  ASSERT_TRUE(rig.ok()) << rig.error().message;
+  ASSERT_TRUE(rig->setFocus("ptz_left", 0.1).ok());
+  rig->tick(2);
+  rig->see("ptz_left", 5);
+  rig->tick(2);
+  EXPECT_NEAR(rig->focus("ptz_left"), 0.1, 1e-6) << "set by hand it stays";
+  ASSERT_TRUE(rig->setFocus("ptz_left", -1).ok());
+  rig->see("ptz_left", 5);
+  rig->tick(2);
+  EXPECT_GT(rig->focus("ptz_left"), 0.8);
+  EXPECT_LT(rig->blur_px("ptz_left", 5), 0.2);
 }
 
 TEST(VirtualProtocol, SurvivesThousandsOfDamagedFrames) {

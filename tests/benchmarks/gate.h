@@ -77,5 +77,6 @@ std::vector<Contest> calibrationContests(std::map<std::string, std::string>* ski
 std::vector<Contest> poseContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>* skipped);
+std::vector<Budget> sceneBudgets(std::map<std::string, std::string>* skipped);
 
 }  // namespace longarm::benchmarks

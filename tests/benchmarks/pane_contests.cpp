@@ -1,16 +1,12 @@
 // The video pane against a GL widget with the same picture, and how long a drag takes to be seen.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <memory>
 
-#include <QApplication>
 #include <QElapsedTimer>
 #include <QHBoxLayout>
 #include <QMouseEvent>
-#include <QSurfaceFormat>
-#include <QVTKOpenGLNativeWidget.h>          // vtkGUISupportQt
 #include <vtkActor.h>                        // vtkRenderingCore
 #include <vtkCellArray.h>                    // vtkCommonDataModel
 #include <vtkCamera.h>                       // vtkRenderingCore
@@ -28,6 +24,7 @@
 
 #include "session/commands/sketch_commands.h"
 #include "session/tools/tool_host.h"
+#include "tests/benchmarks/application.h"
 #include "tests/benchmarks/gate.h"
 #include "tests/vision/stereo_rig.h"
 #include "vision/sketch/overlay.h"
@@ -42,19 +39,6 @@ using vision::PaneSide;
 using widgets::ImageCanvas;
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 4, kOutline = 60;
-
-bool hasDisplay() { return std::getenv("DISPLAY") != nullptr; }
-
-// One application for all; without a display Qt draws into memory.
-void ensureApplication() {
-  if (QCoreApplication::instance() != nullptr) return;
-  if (!hasDisplay()) qputenv("QT_QPA_PLATFORM", "offscreen");
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
-  static int argc = 1;
-  static char name[] = "longarm_benchmarks";
-  static char* argv[] = {name, nullptr};
-  new QApplication(argc, argv);      // lives as long as the process
-}
 
 std::vector<cv::Mat> frames(int width, int height) {
   std::vector<cv::Mat> out;
@@ -240,6 +224,35 @@ class DragScene {
     return times;
   }
 
+  // The click that completes a point, until its numbers are there as text and both panes are repainted.
+  Times click(int times_over) {
+    Times times;
+    const Vector3d place(0.1, 0.05, 1.5);
+    for (int i = 0; i < times_over; ++i) {
+      m_tools.setTool(session::ToolKind::kPoint);
+      const QPointF first = *m_canvases[0]->widgetOfPixel(m_document.snapshot({1})->view.project(place).value());
+      const QPointF second = *m_canvases[1]->widgetOfPixel(m_document.snapshot({2})->view.project(place).value());
+      mouse(0, QEvent::MouseButtonPress, first, Qt::LeftButton, Qt::LeftButton);
+      mouse(0, QEvent::MouseButtonRelease, first, Qt::LeftButton, Qt::NoButton);
+      QApplication::processEvents();
+      QElapsedTimer timer;
+      timer.start();
+      const double work_before = workSeconds();
+      mouse(1, QEvent::MouseButtonPress, second, Qt::LeftButton, Qt::LeftButton);
+      mouse(1, QEvent::MouseButtonRelease, second, Qt::LeftButton, Qt::NoButton);
+      const auto live = m_tools.liveMeasure();
+      const bool told = live && live->xyz && live->text().find("mm") != std::string::npos;
+      QApplication::processEvents();
+      QGuiApplication::sync();
+      times.wall.push_back(told ? 1e-9 * static_cast<double>(timer.nsecsElapsed()) : 1e9);
+      times.work.push_back(workSeconds() - work_before);
+      m_history.undo();
+      m_history.undo();
+      QApplication::processEvents();
+    }
+    return times;
+  }
+
   // Overlays drawn so far: a drag that draws nothing measures nothing.
   int redraws() const { return m_redraws; }
 
@@ -295,6 +308,14 @@ Latency measureDrag() {
   return latencyOf(times.wall, times.work);
 }
 
+Latency measureClick() {
+  ensureApplication();
+  DragScene scene;
+  scene.click(10);
+  const DragScene::Times times = scene.click(200);
+  return latencyOf(times.wall, times.work);
+}
+
 }  // namespace
 
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped) {
@@ -313,7 +334,7 @@ std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped) {
 }
 
 std::vector<Budget> paneBudgets(std::map<std::string, std::string>*) {
-  return {{"drag_to_repaint", 0.008, measureDrag}};
+  return {{"drag_to_repaint", 0.008, measureDrag}, {"click_to_text", 0.010, measureClick}};
 }
 
 }  // namespace longarm::benchmarks

@@ -54,8 +54,10 @@ BridgeServer::BridgeServer(BridgeOptions options)
                                          vector({0, 0, 0}), vector({12, 12, 12}), m_clock);
   m_gripper = std::make_unique<SimulatedGripper>("robot gripper", 0.0, 0.05, 0.1, m_clock);
   m_pan_tilt = std::make_unique<SimulatedPanTilt>("robot head", 1.5, 1.0, m_clock);
+  m_base = std::make_unique<SimulatedBase>("base", BaseLimits(), m_clock);
   (void)m_arm->open();
-  for (Device* device : {static_cast<Device*>(m_gripper.get()), static_cast<Device*>(m_pan_tilt.get())}) {
+  for (Device* device : {static_cast<Device*>(m_gripper.get()), static_cast<Device*>(m_pan_tilt.get()),
+                         static_cast<Device*>(m_base.get())}) {
     (void)device->open();
     (void)device->activate();
   }
@@ -140,6 +142,11 @@ void BridgeServer::publishAll() {
   if (wants("/gripper_controller/holding")) {
     reply(rosbridge::publish("/gripper_controller/holding", rosbridge::BoolMessage{m_gripper->holding()}));
   }
+  if (wants("/odom")) {
+    const BaseState state = *m_base->odometry();
+    reply(rosbridge::publish("/odom", rosbridge::toMessage(state, state.stamp_s + m_options.clock_ahead_s),
+                             m_options.dialect));
+  }
   if (++m_turns % 5 == 0) publishPictures();
 }
 
@@ -202,6 +209,10 @@ void BridgeServer::obey(const rosbridge::Publish& message) {
     const auto wanted = rosbridge::readAs<rosbridge::Float64Message>(message.message);
     ASSERT_TRUE(wanted.ok());
     (void)m_gripper->setOpening(wanted->data);
+  } else if (message.topic == "/cmd_vel") {
+    const auto read = rosbridge::readAs<rosbridge::TwistMessage>(message.message);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    (void)m_base->drive(*rosbridge::toTwist(*read));
   } else if (message.topic.rfind("/pan_tilt/", 0) == 0) {
     const auto wanted = rosbridge::readAs<rosbridge::JointTrajectoryMessage>(message.message);
     ASSERT_TRUE(wanted.ok() && wanted->points.size() == 1);

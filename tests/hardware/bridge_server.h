@@ -14,6 +14,7 @@
 #include "core/clock.h"
 #include "hardware/rosbridge_codec/protocol.h"
 #include "hardware/sim/simulated_arm.h"
+#include "hardware/sim/simulated_base.h"
 #include "hardware/sim/simulated_gripper.h"
 #include "hardware/sim/simulated_pan_tilt.h"
 
@@ -47,6 +48,7 @@ class BridgeServer {
   SimulatedArm& arm() { return *m_arm; }
   SimulatedGripper& gripper() { return *m_gripper; }
   SimulatedPanTilt& panTilt() { return *m_pan_tilt; }
+  SimulatedBase& base() { return *m_base; }
 
   std::vector<Received> received() const;
   /// How many publications of a topic came, and the newest of them.
@@ -82,6 +84,7 @@ class BridgeServer {
   std::unique_ptr<SimulatedArm> m_arm;
   std::unique_ptr<SimulatedGripper> m_gripper;
   std::unique_ptr<SimulatedPanTilt> m_pan_tilt;
+  std::unique_ptr<SimulatedBase> m_base;
   std::atomic<int> m_clients{0};
   std::atomic<bool> m_quiet{false};
   mutable std::mutex m_mutex;            // guards what follows

@@ -5,10 +5,12 @@
 #include <thread>
 
 #include "hardware/drivers/rosbridge/rosbridge_arm.h"
+#include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
 #include "hardware/drivers/skeleton/skeleton_pan_tilt.h"
+#include "hardware/sim/simulated_base.h"
 #include "hardware/sim/simulated_camera.h"
 #include "tests/hardware/bridge_server.h"
 #include "tests/hardware/gate_rig.h"
@@ -79,6 +81,17 @@ class SimPanTiltRig final : public SimRig<SimulatedPanTilt> {
   std::optional<bool> moves() override { return m_device->moving(); }
   bool breakIt() override {
     m_device->injectFault("the cable is torn");
+    return true;
+  }
+};
+
+class SimBaseRig final : public SimRig<SimulatedBase> {
+ public:
+  SimBaseRig() { m_device = std::make_unique<SimulatedBase>("base", BaseLimits(), m_clock); }
+  Status command() override { return m_device->drive({0.2, 0, 0.1}); }
+  std::optional<bool> moves() override { return !m_device->odometry()->twist.still(); }
+  bool breakIt() override {
+    m_device->injectFault("a track has come off");
     return true;
   }
 };
@@ -171,6 +184,13 @@ class BridgePanTiltRig final : public BridgeRig<RosbridgePanTilt> {
   std::optional<bool> moves() override { return m_server.panTilt().moving(); }
 };
 
+class BridgeBaseRig final : public BridgeRig<RosbridgeBase> {
+ public:
+  BridgeBaseRig() { m_device = std::make_unique<RosbridgeBase>("base", m_robot, BaseLimits(), TopicNames()); }
+  Status command() override { return m_device->drive({0.2, 0, 0}); }
+  std::optional<bool> moves() override { return !m_server.base().odometry()->twist.still(); }
+};
+
 class BridgeCameraRig final : public BridgeRig<RosbridgeCamera> {
  public:
   BridgeCameraRig() {
@@ -190,11 +210,17 @@ DeviceCase deviceCase(const char* name) {
 }  // namespace
 
 std::vector<DeviceCase> allDeviceCases() {
-  return {deviceCase<SimArmRig>("SimulatedArm"),         deviceCase<SimGripperRig>("SimulatedGripper"),
-          deviceCase<SimPanTiltRig>("SimulatedPanTilt"), deviceCase<SimCameraRig>("SimulatedCamera"),
-          deviceCase<SkeletonRig>("SkeletonPanTilt"),    deviceCase<BridgeArmRig>("RosbridgeArm"),
-          deviceCase<BridgeGripperRig>("RosbridgeGripper"), deviceCase<BridgePanTiltRig>("RosbridgePanTilt"),
-          deviceCase<BridgeCameraRig>("RosbridgeCamera")};
+  return {deviceCase<SimArmRig>("SimulatedArm"),
+          deviceCase<SimGripperRig>("SimulatedGripper"),
+          deviceCase<SimPanTiltRig>("SimulatedPanTilt"),
+          deviceCase<SimCameraRig>("SimulatedCamera"),
+          deviceCase<SkeletonRig>("SkeletonPanTilt"),
+          deviceCase<BridgeArmRig>("RosbridgeArm"),
+          deviceCase<BridgeGripperRig>("RosbridgeGripper"),
+          deviceCase<BridgePanTiltRig>("RosbridgePanTilt"),
+          deviceCase<BridgeCameraRig>("RosbridgeCamera"),
+          deviceCase<SimBaseRig>("SimulatedBase"),
+          deviceCase<BridgeBaseRig>("RosbridgeBase")};
 }
 
 }  // namespace longarm::hardware::tests

@@ -151,6 +151,26 @@ TEST(RosbridgeMessages, AllTypesSurviveBothDialectsAndBothForms) {
       EXPECT_EQ(i.r, info.r);
       EXPECT_EQ(i.width, 640u);
 
+      const auto twist = throughTheWire(TwistMessage{{0.1, -0.2, 0}, {0, 0, 0.3}}, dialect, binary);
+      EXPECT_EQ(twist.linear, (std::array<double, 3>{0.1, -0.2, 0}));
+      EXPECT_EQ(twist.angular[2], 0.3);
+      BaseState base;
+      base.x = 1.5;
+      base.y = -0.25;
+      base.yaw = -3;
+      base.twist = {0.2, 0, -0.1};
+      const auto odometry = throughTheWire(toMessage(base, 12.5), dialect, binary);
+      const auto read = toBaseState(odometry);
+      ASSERT_TRUE(read.ok()) << read.error().message;
+      EXPECT_EQ(read->x, 1.5);
+      EXPECT_EQ(read->y, -0.25);
+      EXPECT_NEAR(read->yaw, -3, 1e-12);
+      EXPECT_EQ(read->twist.turn, -0.1);
+      EXPECT_NEAR(read->stamp_s, 12.5, 1e-6);
+      OdometryMessage broken = toMessage(base, 1);
+      broken.orientation = {0, 0, 0, 0};
+      EXPECT_EQ(toBaseState(broken).error().code, ErrorCode::kInvalidInput);
+
       EXPECT_EQ(throughTheWire(Float64Message{-1.0 / 3}, dialect, binary).data, -1.0 / 3);
       EXPECT_TRUE(throughTheWire(BoolMessage{true}, dialect, binary).data);
       EXPECT_EQ(throughTheWire(StringMessage{"{\"a\": \"ü\"}"}, dialect, binary).data, "{\"a\": \"ü\"}");

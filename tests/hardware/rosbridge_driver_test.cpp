@@ -1,10 +1,14 @@
 // The rosbridge devices against a small robot, over a good link.
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/text.h"
 #include "tests/hardware/rosbridge_rig.h"
 
 namespace longarm::hardware::tests {
@@ -142,6 +146,37 @@ TEST(RosbridgeDriver, ThePanTiltMovesWithinItsLimits) {
   EXPECT_NE(refused.error().message.find("tilt"), std::string::npos) << refused.error().message;
 }
 
+TEST(RosbridgeDriver, TheBaseDrivesAndTellsItsOdometryOnTheConsolesClock) {
+  RosbridgeRig rig;
+  rig.openAndActivate();
+  ASSERT_TRUE(eventually([&] { return rig.base->odometry() != nullptr; }));
+  ASSERT_TRUE(rig.base->drive({0.2, 0, 0.1}).ok());
+  EXPECT_TRUE(eventually([&] { return rig.base->odometry()->twist.forward == 0.2; }));
+  EXPECT_NEAR(rig.base->odometry()->stamp_s, rig.steady.now_s(), 2)
+      << "not on the robot's clock, 5000 s ahead";
+  EXPECT_TRUE(eventually([&] {
+    return rig.base->odometry()->twist.still() && rig.base->odometry()->x > 0.01;
+  })) << "the robot stops by itself when nothing follows";
+  EXPECT_EQ(rig.base->drive({0.5, 0, 0}).error().code, ErrorCode::kOutOfLimits);
+  ASSERT_TRUE(rig.base->drive({0.1, 0, 0}).ok());
+  rig.base->stop();
+  EXPECT_TRUE(eventually([&] { return rig.server.base().odometry()->twist.still(); }));
+  EXPECT_EQ(rig.base->drive({0.1, 0, 0}).error().code, ErrorCode::kRefused)
+      << "idle until it is activated again";
+}
+
+TEST(RosbridgeDriver, TheBaseUsesTheTopicsOfTheWorkcell) {
+  RigOptions options;
+  options.topics = {{"/cmd_vel", "/tracks/velocity"}, {"/odom", "/tracks/odometry"}};
+  RosbridgeRig rig(options);
+  for (Device* device : rig.all()) ASSERT_TRUE(device->open().ok());
+  EXPECT_TRUE(eventually([&] { return rig.server.subscribed("/tracks/odometry"); }));
+  ASSERT_TRUE(eventually([&] { return rig.base->state() == DeviceState::kIdle; }));
+  ASSERT_TRUE(rig.base->activate().ok());
+  ASSERT_TRUE(rig.base->drive({0.1, 0, 0}).ok());
+  EXPECT_TRUE(eventually([&] { return rig.server.published("/tracks/velocity") == 1; }));
+}
+
 TEST(RosbridgeDriver, PicturesComeWhileTheCameraIsActiveAndCarryTheirExposure) {
   RosbridgeRig rig;
   rig.open();
@@ -159,6 +194,73 @@ TEST(RosbridgeDriver, PicturesComeWhileTheCameraIsActiveAndCarryTheirExposure) {
   EXPECT_TRUE(eventually([&] { return !rig.server.subscribed("/camera/head_left/image/compressed"); }));
   EXPECT_NE(rig.camera->latestFrame(), nullptr) << "the last picture stays visible";
   EXPECT_EQ(rig.camera->setZoom(0.5).error().code, ErrorCode::kRefused) << "it has no zoom";
+}
+
+class ZoomingCamera {
+ public:
+  void open() {
+    rig.openAndActivate();
+    ASSERT_TRUE(camera.open().ok());
+    ASSERT_TRUE(eventually([&] { return rig.server.subscribed("/camera/ptz/zoom_state"); }));
+  }
+  void tell(const char* topic, double value) {
+    rig.server.sendText("{\"op\": \"publish\", \"topic\": \"/camera/ptz/" + std::string(topic) +
+                        "\", \"msg\": {\"data\": " + formatNumber(value) + "}}");
+  }
+  bool told(double zoom) { return eventually([&] { return camera.zoom().valueOr(-1) == zoom; }); }
+  double commanded(const char* topic) const {
+    const auto body = rig.server.newest(std::string("/camera/ptz/") + topic);
+    return body.json().is_object() ? body.json().value("data", -9.0) : -9.0;
+  }
+
+  RosbridgeRig rig;
+  CameraSettings settings{20, true};
+  RosbridgeCamera camera{"ptz", rig.robot, settings, TopicNames{}};
+};
+
+TEST(RosbridgeDriver, ZoomIsCommandedToldBackAndKnownForThePast) {
+  ZoomingCamera ptz;
+  ASSERT_NO_FATAL_FAILURE(ptz.open());
+  EXPECT_EQ(ptz.camera.zoom().error().code, ErrorCode::kStale) << "it has told nothing yet";
+  ptz.tell("zoom_state", 0.25);
+  ASSERT_TRUE(ptz.told(0.25));
+  const double then_s = ptz.rig.clock().now_s();
+  EXPECT_EQ(ptz.camera.zoomAt(then_s).valueOr(-1), 0.25);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  ptz.tell("zoom_state", 0.75);
+  ASSERT_TRUE(ptz.told(0.75));
+  const auto between = ptz.camera.zoomAt(then_s);
+  ASSERT_TRUE(between.ok());
+  EXPECT_GE(*between, 0.25);
+  EXPECT_LT(*between, 0.75) << "a picture taken before the change is not of the new lens";
+  EXPECT_FALSE(ptz.camera.zoomAt(then_s - 60).ok());
+  ASSERT_TRUE(ptz.camera.setZoom(0.9).ok());
+  EXPECT_TRUE(eventually([&] { return ptz.commanded("zoom") == 0.9; }));
+  for (const double wrong : {-0.1, 1.1, std::nan("")}) {
+    EXPECT_EQ(ptz.camera.setZoom(wrong).error().code, ErrorCode::kOutOfLimits) << wrong;
+    EXPECT_EQ(ptz.camera.setFocus(wrong).error().code, ErrorCode::kOutOfLimits) << wrong;
+  }
+  ptz.tell("zoom_state", 7);
+  ptz.tell("zoom_state", 0.5);
+  EXPECT_TRUE(ptz.told(0.5)) << "what makes no sense is left out";
+}
+
+TEST(RosbridgeDriver, StopHoldsALensThatMovesAndPicturesGoOn) {
+  ZoomingCamera ptz;
+  ASSERT_NO_FATAL_FAILURE(ptz.open());
+  ptz.tell("zoom_state", 0.2);
+  ASSERT_TRUE(ptz.told(0.2));
+  const int before = ptz.rig.server.published("/camera/ptz/zoom");
+  ptz.camera.haltLens();
+  ASSERT_TRUE(ptz.camera.setFocus(0.5).ok());
+  ASSERT_TRUE(eventually([&] { return ptz.commanded("focus") == 0.5; }));
+  EXPECT_EQ(ptz.rig.server.published("/camera/ptz/zoom"), before) << "a lens that stands needs no command";
+  ASSERT_TRUE(ptz.camera.setZoom(0.9).ok());
+  ASSERT_TRUE(eventually([&] { return ptz.commanded("zoom") == 0.9; }));
+  ptz.camera.haltLens();
+  EXPECT_TRUE(eventually([&] { return ptz.commanded("zoom") == 0.2; })) << "it is sent to where it is";
+  ASSERT_TRUE(ptz.camera.focusItself().ok());
+  EXPECT_TRUE(eventually([&] { return ptz.commanded("focus") == -1; }));
 }
 
 TEST(RosbridgeDriver, AsksForPicturesAsCborThrottled) {

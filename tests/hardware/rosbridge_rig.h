@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "hardware/drivers/rosbridge/rosbridge_arm.h"
+#include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
@@ -46,6 +47,7 @@ class RosbridgeRig {
     gripper = std::make_shared<RosbridgeGripper>("gripper", robot, GripperSettings{"finger", 0, 0.05}, topics);
     head = std::make_shared<RosbridgePanTilt>(
         "head", robot, PanTiltSettings{{"pan", -1.5, 1.5}, {"tilt", -1.5, 1.5}}, topics);
+    base = std::make_shared<RosbridgeBase>("base", robot, BaseLimits(), topics);
     camera = std::make_shared<RosbridgeCamera>("head_left", robot, CameraSettings{}, topics);
   }
 
@@ -76,7 +78,9 @@ class RosbridgeRig {
     return out;
   }
   bool robotStands() { return server.arm().jointState()->velocities.cwiseAbs().maxCoeff() < 1e-9; }
-  std::vector<Device*> all() const { return {arm.get(), gripper.get(), head.get(), camera.get()}; }
+  std::vector<Device*> all() const {
+    return {arm.get(), gripper.get(), head.get(), camera.get(), base.get()};
+  }
   const Clock& clock() const { return steady; }
 
   SteadyClock steady;
@@ -88,6 +92,7 @@ class RosbridgeRig {
   std::shared_ptr<RosbridgeGripper> gripper;
   std::shared_ptr<RosbridgePanTilt> head;
   std::shared_ptr<RosbridgeCamera> camera;
+  std::shared_ptr<RosbridgeBase> base;
 };
 
 }  // namespace longarm::hardware::tests

@@ -62,7 +62,11 @@ class RandomOperator {
 
   void press() {
     const double which = uniform(0, 1);
-    if (which < 0.30) return m_player.play();
+    if (which < 0.27) return m_player.play();
+    if (which < 0.30) {
+      (void)m_player.playUntil(m_player.speed() > 0 ? m_path.duration() : 0).ok();
+      return;
+    }
     if (which < 0.45) return m_player.pause();
     if (which < 0.85) return m_player.setSpeed(uniform(-2.2, 2.2));
     if (which < 0.92) {

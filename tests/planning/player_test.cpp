@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planning/trajectory/nominal_limits.h"
 #include "tests/planning/player_fixture.h"
 
 namespace longarm::planning {
@@ -93,6 +94,78 @@ TEST_F(PlayerTest, PausingComesToRestOnThePathWithinTheHorizon) {
   EXPECT_EQ(m_player.rate(), 0);
   const auto& rest = m_sent.back().points.back();
   EXPECT_LT((rest.positions - m_path.sample(m_player.cursor()).positions).norm(), 1e-12);
+}
+
+// At any instant, whatever the motion: rest on the path within 200 ms of the command, limits kept.
+TEST_F(PlayerTest, PausingAtAnyInstantOfAPlannedMotionRestsWithinTwoTenthsOfASecond) {
+  double slowest = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const MotionLimits limits = limitsOf(6, 1.5, 4);
+    const NominalLimits nominal = nominalLimits(limits);
+    const Trajectory path = SmoothMotion(limits, seed)
+                                .timed(limits, {nominal.max_velocity[0] / limits.max_velocity[0],
+                                                nominal.max_acceleration[0] / limits.max_acceleration[0]});
+    Player player(limits);
+    ASSERT_TRUE(player.load(path).ok());
+    player.play();
+    double now = 10;
+    for (double t = 0; t < path.duration() * (0.02 + 0.024 * seed); t += kTick_s) player.tick(now += kTick_s);
+    const double before = now;
+    TrajectoryPoint rest;
+    player.pause();
+    while (player.state() == PlayerState::kPausing) {
+      const Horizon sent = player.tick(now += kTick_s);
+      for (const auto& p : sent.points) {
+        EXPECT_LE(p.accelerations.cwiseAbs().maxCoeff(), 4);
+        EXPECT_LE(p.velocities.cwiseAbs().maxCoeff(), 1.5);
+      }
+      if (sent.points.empty()) continue;
+      EXPECT_LT((sent.points.front().positions - path.sample(player.armCursor()).positions).norm(), 1e-9);
+      rest = sent.points.back();
+    }
+    if (player.state() != PlayerState::kPaused) continue;  // it had reached the end by then
+    slowest = std::max(slowest, now - kTick_s - before);
+    EXPECT_EQ(rest.velocities.norm(), 0);
+    EXPECT_LT((rest.positions - path.sample(player.armCursor()).positions).norm(), 1e-9);
+  }
+  EXPECT_GT(slowest, 0.05);
+  EXPECT_LT(slowest, 0.2);
+}
+
+TEST_F(PlayerTest, AStepRestsAtTheEndOfAStageAndGoesOnFromThere) {
+  load();
+  Trajectory two = m_path;
+  const double border = two.duration();
+  for (std::size_t i = 1; i < m_path.points.size(); ++i) {  // and back the way it came
+    auto p = m_path.points[m_path.points.size() - 1 - i];
+    p.t = border + (border - p.t);
+    p.velocities = -p.velocities;
+    two.points.push_back(p);
+  }
+  two.points[m_path.points.size() - 1].accelerations.setZero();
+  ASSERT_TRUE(m_player.load(two).ok());
+  EXPECT_EQ(m_player.playUntil(0.5 * border).error().code, ErrorCode::kInvalidInput)
+      << "the arm would not rest there";
+  ASSERT_TRUE(m_player.playUntil(border).ok());
+  runToRest();
+  EXPECT_EQ(m_player.state(), PlayerState::kPaused);
+  EXPECT_EQ(m_player.armCursor(), border);
+  EXPECT_EQ(m_player.playUntil(border).error().code, ErrorCode::kRefused);
+  m_player.play();
+  runToRest();
+  EXPECT_EQ(m_player.state(), PlayerState::kDone);
+  m_player.setSpeed(-2);
+  ASSERT_TRUE(m_player.playUntil(border).ok());
+  runToRest();
+  EXPECT_EQ(m_player.state(), PlayerState::kPaused);
+  EXPECT_EQ(m_player.armCursor(), border);
+  ASSERT_TRUE(m_player.playUntil(0).ok());
+  run(1);
+  m_player.halt();
+  ASSERT_TRUE(m_player.resumeFrom(two.sample(m_player.armCursor()).positions).ok());
+  m_player.play();
+  runToRest();
+  EXPECT_EQ(m_player.state(), PlayerState::kReady);
 }
 
 TEST_F(PlayerTest, APausedMotionGoesOnToTheEnd) {

@@ -102,6 +102,29 @@ TEST_F(Library, ALensForPicturesOfAnotherSizeIsRefused) {
   EXPECT_FALSE(calibration->apply(change).ok());
 }
 
+// Kept beside the others, in use at every zoom, and gone back from.
+TEST_F(Library, ATableOfAZoomCameraIsUsedAtItsZoom) {
+  auto ptz = planning::loadBuiltInWorkcell("ptz");
+  ASSERT_TRUE(ptz.ok()) << ptz.error().message;
+  const auto cell = std::make_shared<const planning::Workcell>(std::move(*ptz));
+  calibration->setWorkcell(cell);
+  const auto focalAt = [&](double zoom) {
+    const auto view = cameraView(*calibration->workcellInUse(), "ptz_left", {}, zoom);
+    return view ? view->camera.fx : -1;
+  };
+  const double own = focalAt(0.2);
+  vision::ZoomFile table = *vision::readZoomFile(cell->camera("ptz_left")->calibration);
+  for (auto& node : table.cameras.front().nodes) node.interior[0] *= 1.01;
+  table.cameras.front().nodes.pop_back();                  // calibrated up to 0.7 only
+  ASSERT_TRUE(calibration->applyTable("ptz_left", table).ok());
+  EXPECT_NEAR(focalAt(0.2), 1.01 * own, 1e-6);
+  EXPECT_EQ(focalAt(0.75), -1) << "beyond its settings nothing is measured";
+  EXPECT_EQ(calibration->recordInUse("ptz_left")->kind, "zoom");
+  EXPECT_FALSE(calibration->applyTable("wrist", table).ok());
+  ASSERT_TRUE(calibration->use("ptz_left", "").ok());
+  EXPECT_DOUBLE_EQ(focalAt(0.2), own);
+}
+
 TEST_F(Library, ADamagedRecordIsLeftOutAndTold) {
   ASSERT_TRUE(calibration->apply(lensChange(530, 0.3)).ok());
   const auto record = *calibration->recordInUse("drive");

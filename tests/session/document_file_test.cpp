@@ -60,6 +60,7 @@ DocumentState smallState() {
     snapshot->view = view;
     snapshot->view.pose_covariance = Matrix6d::Identity() * 1e-6;
     snapshot->view.pose_covariance(0, 5) = 1e-7;
+    snapshot->view.zoom = 1.0 / 3;
     snapshot->image = cv::Mat(16, 24, CV_8UC3, cv::Scalar(10, 200, static_cast<double>(state.snapshots.size())));
     snapshot->stamp_s = 12.345678901234567;
     snapshot->wall_time_s = 1.7e9 + 0.1;
@@ -100,6 +101,7 @@ TEST_F(SketchFile, GivesBackWhatWasSaved) {
   EXPECT_EQ(b.view.camera.distortion, a.view.camera.distortion);
   EXPECT_LT((b.view.X_WC.matrix() - a.view.X_WC.matrix()).norm(), 1e-14) << "quaternion and back";
   EXPECT_EQ(b.view.pose_covariance, a.view.pose_covariance);
+  EXPECT_EQ(b.view.zoom, a.view.zoom);
   EXPECT_EQ(b.stamp_s, a.stamp_s);
   EXPECT_EQ(b.wall_time_s, a.wall_time_s);
   EXPECT_EQ(b.robot_state.names, a.robot_state.names);

@@ -83,7 +83,7 @@ TEST(OverlayBuilder, DrawsADraftInPlaceOfItsItem) {
   SketchItem draft = *bench.document.item({1});
   draft.setPick({1}, 0, {{50, 60}, PickState::kFree});
   OverlayOptions options;
-  options.draft = &draft;
+  options.drafts = {&draft};
   options.active_item = {1};
   options.active_vertex = 0;
   options.active_snapshot = {1};

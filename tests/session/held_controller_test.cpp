@@ -126,6 +126,35 @@ TEST_F(HeldControllerTest, PutsABodyOfTheWorldDownWhereTheGripperOpensAsOneStep)
   EXPECT_EQ(m_bench.document.world()[0], before);
 }
 
+// A tool goes where it is put down, whichever of its bodies was held; a door stays on its hinge.
+TEST_F(HeldControllerTest, PutsATemplateDownByThePartThatWasHeld) {
+  const Eigen::VectorXd q = grasp();
+  m_bench.document.clearPlan();
+  for (const bool hinged : {false, true}) {
+    WorldItem item = pipeItem();
+    m_bench.history.undo();
+    planning::TemplatePart grip{"grip", planning::Cylinder{kRadius, 0.4}, Pose::Identity(), hinged};
+    grip.X_TP.translation() = Vector3d(0.1, 0, 0);
+    item.kind = WorldKind::kTemplate;
+    item.X_WO = item.X_WO * grip.X_TP.inverse();
+    item.parts = {grip};
+    m_bench.history.push(addWorldItem(item));
+    poll(true, q);
+    ASSERT_TRUE(m_held.held()) << m_said.toStdString();
+    EXPECT_EQ(m_held.held()->body.name, "Pipe 1.grip");
+    const Pose X_WP = m_held.held()->at(cell(), lifted(q)).X_WO;
+    poll(false, lifted(q));
+    const WorldItem& after = *m_bench.document.worldItem(item.id);
+    if (hinged) {
+      EXPECT_EQ(after, item);
+    } else {
+      EXPECT_LT(((after.X_WO * grip.X_TP).matrix() - X_WP.matrix()).norm(), 1e-9);
+      m_bench.history.undo();
+    }
+    m_bench.history.undo();
+  }
+}
+
 TEST_F(HeldControllerTest, FindsAKnownBodyBetweenTheFingersAndSaysWhenItIsNone) {
   const Eigen::VectorXd q = grasp();
   m_bench.document.clearPlan();

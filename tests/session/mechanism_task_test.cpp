@@ -38,15 +38,9 @@ class MechanismTask : public ::testing::Test {
     m_cell = std::make_shared<const planning::Workcell>(testing::builtInWorkcell());
     RuntimeOptions options;
     options.scenario = scenario;
-    options.lockstep = true;
-    options.gui_watchdog = false;
     options.cameras = false;
-    options.virtual_robot = testing::virtualRobot();
-    auto started = RobotRuntime::start(m_cell, options);
-    ASSERT_TRUE(started.ok()) << started.error().message;
-    m_runtime = std::move(*started);
-    ASSERT_TRUE(m_runtime->waitUntilUp(20).ok());
-    ASSERT_TRUE(m_runtime->resetStop().ok());
+    m_runtime = testing::robotInLockstep(m_cell, options);
+    ASSERT_NE(m_runtime, nullptr);
     gripper(m_cell->gripper->open);
   }
   // Both ends of a cylinder of the scenario: where an operator would click.
@@ -77,22 +71,14 @@ class MechanismTask : public ::testing::Test {
     ASSERT_EQ(m_runtime->status().player, planning::PlayerState::kDone);
     ASSERT_TRUE(m_runtime->step(0.5).ok());
   }
-  json truth() const {
-    const auto answer = m_runtime->callService("/virtual_robot/truth", "{}");
-    EXPECT_TRUE(answer.ok()) << answer.error().message;
-    return answer.ok() ? json::parse(*answer) : json::object();
-  }
+  json truth() const { return testing::truthOf(*m_runtime); }
   void takeHandle(const std::string& macro, const std::string& handle) {
     const auto axis = axisOf(handle);
     perform(macro, axis, {{"radius", std::get<planning::Cylinder>(m_scenario.object(handle)->body.shape).radius}});
     gripper(m_cell->gripper->closed);
     ASSERT_EQ(truth().at("held"), handle);
   }
-  void expectGoals() const {
-    const json told = truth();
-    for (const auto& goal : told.at("goals")) EXPECT_TRUE(goal.at("reached").get<bool>()) << goal.dump();
-    EXPECT_TRUE(told.at("contacts").empty()) << told.at("contacts").dump();
-  }
+  void expectGoals() const { testing::expectGoals(*m_runtime); }
 
   planning::Scenario m_scenario;
   std::shared_ptr<const planning::Workcell> m_cell;

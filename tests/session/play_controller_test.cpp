@@ -1,7 +1,11 @@
 // From a plan on the table to motion: preview until Play, and no motion from a stale plan.
+#include <random>
+
+#include <QCoreApplication>
+#include <QElapsedTimer>
 #include <QObject>
 
-#include "session/controllers/play_controller.h"
+#include "session/controllers/play_hand.h"
 #include "tests/session/runtime_fixture.h"
 
 namespace longarm::session {
@@ -150,6 +154,198 @@ TEST_F(PlayControllerTest, ForgetsTheLoadedMotionWhenThePlanIsDiscarded) {
   run(2);
   EXPECT_EQ(player(), PlayerState::kEmpty);
   EXPECT_FALSE(m_play.state().has_plan);
+}
+
+// There and back again, as two stages.
+TEST_F(PlayControllerTest, StepsFromStageToStageBothWays) {
+  Trajectory there = motion();
+  const double border = there.duration();
+  const std::size_t n = there.points.size();
+  there.points.back().accelerations.setZero();
+  for (std::size_t i = 1; i < n; ++i) {
+    TrajectoryPoint back = there.points[n - 1 - i];
+    back.t = 2 * border - back.t;
+    back.velocities = -back.velocities;
+    there.points.push_back(back);
+  }
+  PlanRecord record;
+  record.macro = "test";
+  record.plan.status = planning::PlanStatus::kOk;
+  record.plan.trajectory = there;
+  record.plan.stages = {{"there", 0, border, false}, {"back", border, 2 * border, false}};
+  m_document.setPlan(record);
+  EXPECT_TRUE(m_play.state().why_not_stage.isEmpty()) << m_play.state().why_not_stage.toStdString();
+  EXPECT_FALSE(m_play.state().why_not_stage_back.isEmpty());
+  m_play.playStage();
+  run(border + 1);
+  EXPECT_EQ(player(), PlayerState::kPaused);
+  EXPECT_EQ(m_runtime->status().arm_cursor, border);
+  EXPECT_LT((measured() - there.sample(border).positions).norm(), 1e-6);
+  m_play.playStage();
+  run(border + 1);
+  EXPECT_EQ(player(), PlayerState::kDone);
+  EXPECT_FALSE(m_play.state().why_not_stage.isEmpty());
+  m_play.backUpStage();
+  run(0.5);
+  EXPECT_TRUE(m_play.state().playing);
+  run(border + 1);
+  EXPECT_EQ(m_runtime->status().arm_cursor, border);
+  m_play.backUpStage();
+  run(border + 1);
+  EXPECT_EQ(player(), PlayerState::kReady);
+}
+
+TEST_F(PlayControllerTest, HoldToRunMovesOnlyWhileItIsHeld) {
+  showPlan(motion());
+  PlayHand hand(m_play);
+  QStringList said;
+  QObject::connect(&hand, &PlayHand::said, &hand, [&said](const QString& sentence) { said << sentence; });
+  hand.setHoldToRun(true);
+  EXPECT_TRUE(m_play.state().only_held);
+  hand.click(PlayHand::Order::kPlay);
+  run(0.2);
+  EXPECT_EQ(player(), PlayerState::kEmpty) << "a click is not enough";
+  EXPECT_EQ(said.size(), 1);
+  hand.press(PlayHand::Order::kPlay);
+  for (int i = 0; i < 10; ++i) {
+    run(0.1);
+    m_play.keepRunning();  // as its timer does; the robot's time here is not the clock's
+  }
+  EXPECT_EQ(player(), PlayerState::kPlaying);
+  hand.release();
+  run(0.3);
+  EXPECT_EQ(player(), PlayerState::kPaused);
+  const Eigen::VectorXd stands = measured();
+  run(1);
+  EXPECT_EQ((measured() - stands).norm(), 0);
+}
+
+TEST_F(PlayControllerTest, AHandThatIsGonePausesByItself) {
+  showPlan(motion());
+  m_play.setOnlyHeld(true);
+  m_play.play();
+  run(0.2);
+  EXPECT_EQ(player(), PlayerState::kPlaying);
+  run(0.1);
+  EXPECT_EQ(player(), PlayerState::kPausing);
+  run(0.3);
+  EXPECT_EQ(player(), PlayerState::kPaused);
+  EXPECT_NE(m_runtime->status().notice.find("not held"), std::string::npos) << m_runtime->status().notice;
+}
+
+TEST_F(PlayControllerTest, OnALiveRobotPlayIsHeldForAWhile) {
+  showPlan(motion());
+  PlayHand hand(m_play);
+  hand.setLive(true);
+  EXPECT_FALSE(hand.whyHold().isEmpty());
+  hand.press(PlayHand::Order::kPlay);
+  hand.release();
+  run(0.2);
+  EXPECT_EQ(player(), PlayerState::kEmpty);
+  int argc = 1;
+  char name[] = "test";
+  char* argv[] = {name, nullptr};
+  const auto application =
+      QCoreApplication::instance() != nullptr ? nullptr : std::make_unique<QCoreApplication>(argc, argv);
+  hand.press(PlayHand::Order::kPlay);
+  QElapsedTimer since;
+  since.start();
+  while (player() == PlayerState::kEmpty && since.elapsed() < 20000)
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+  EXPECT_GE(since.elapsed(), PlayHand::kConfirm_ms - 20);
+  hand.release();
+  run(0.5);
+  EXPECT_EQ(player(), PlayerState::kPlaying) << "it goes on by itself";
+}
+
+TEST_F(PlayControllerTest, AHaltTellsWhatHappenedAndTheArmCanGoOnOrBack) {
+  showPlan(motion());
+  m_play.play();
+  run(1);
+  m_arm->injectFault("joint 2 is too hot");
+  run(1);
+  EXPECT_TRUE(m_play.state().halted);
+  EXPECT_FALSE(m_play.state().halt_reason.isEmpty());
+  ASSERT_TRUE(m_runtime->resetStop().ok());
+  refresh();
+  EXPECT_TRUE(m_play.state().can_play) << m_play.state().why_not_play.toStdString();
+  EXPECT_TRUE(m_play.state().can_back_up) << m_play.state().why_not_back_up.toStdString();
+  m_play.backUp();
+  run(3);
+  EXPECT_FALSE(m_play.state().halted);
+  EXPECT_EQ(player(), PlayerState::kReady);
+}
+
+// Whatever else is pressed: a paused arm stands until somebody plays, backs up or jogs.
+TEST_F(PlayControllerTest, TenThousandOtherCommandsMoveNothingWhilePaused) {
+  std::mt19937 random(5);
+  const auto any = [&random](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  const auto one_in = [&random](unsigned n) { return random() % n == 0; };
+  PlayHand hand(m_play);
+  for (int motions = 0; motions < 20; ++motions) {
+    m_home = measured();
+    m_play.setOnlyHeld(false);
+    m_play.setSpeed(any(0.5, 2));
+    showPlan(motion(random() % 50 + 1));
+    m_play.play();
+    run(any(0.8, 2));
+    m_play.pause();
+    run(0.5);
+    ASSERT_EQ(player(), PlayerState::kPaused) << m_play.state().why_not_play.toStdString();
+    const Eigen::VectorXd stands = measured();
+    for (int i = 0; i < 500; ++i) {
+      switch (random() % 12) {
+        case 0:
+          m_play.setSpeed(any(-3, 3));
+          break;
+        case 1:
+          m_play.scrub(any(-1, 20));
+          break;
+        case 2:
+          m_play.pause();
+          break;
+        case 3:
+          m_play.setOnlyHeld(one_in(2));
+          break;
+        case 4:
+          m_play.keepRunning();
+          break;
+        case 5:
+          m_play.acceptAccuracy();
+          break;
+        case 6:
+          hand.release();
+          break;
+        case 7:
+          (void)m_runtime->scrub(any(0, 5)).ok();
+          break;
+        case 8:
+          m_runtime->releaseJog();
+          break;
+        case 9:
+          (void)m_runtime->resetStop().ok();
+          break;
+        case 10:
+          m_runtime->setObstacles({});
+          break;
+        case 11:
+          if (one_in(20)) m_runtime->stop("operator", "test");
+          if (one_in(60)) (void)m_runtime->load(motion(random() % 5 + 1)).ok();
+          if (one_in(60)) showPlan(motion(random() % 5 + 1));
+          break;
+      }
+      step(0.02);
+      refresh();
+      ASSERT_EQ((measured() - stands).norm(), 0) << "motion " << motions << ", command " << i;
+      ASSERT_FALSE(m_play.state().playing);
+    }
+    (void)m_runtime->resetStop().ok();
+    step(0.5);
+    ASSERT_TRUE(m_runtime->resetStop().ok());
+    refresh();
+  }
 }
 
 TEST_F(PlayControllerTest, CannotPlayWithoutARobot) {

@@ -108,6 +108,20 @@ TEST_F(PlayCorrectionTest, PausedMovesTheToolByTheStepAndWaitsForPlay) {
   EXPECT_LT((measured() - m_home).norm(), 1e-3) << "back over the correction to where it began";
 }
 
+// Looking ahead along the motion changes nothing about where the arm is corrected.
+TEST_F(PlayCorrectionTest, ACorrectionAfterScrubbingIsMadeWhereTheArmStands) {
+  m_play.play();
+  run(0.4 * m_play.state().duration_s);
+  m_play.pause();
+  run(1);
+  const Eigen::Vector3d before = tool().translation();
+  m_play.scrub(0.9 * m_play.state().duration_s);
+  m_play.nudge(kUp);
+  settle();
+  ASSERT_TRUE(m_failed.isEmpty()) << m_failed.join(QLatin1Char('\n')).toStdString();
+  EXPECT_LT((tool().translation() - before - Eigen::Vector3d(0, 0, 0.005)).norm(), 1e-4);
+}
+
 TEST_F(PlayCorrectionTest, MovingPausesCorrectsAndGoesOnByItself) {
   m_play.play();
   run(0.3 * m_play.state().duration_s);

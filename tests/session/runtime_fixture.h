@@ -42,10 +42,14 @@ inline std::shared_ptr<const planning::Workcell> threeJointWorkcell() {
 class RuntimeFixture : public ::testing::Test {
  protected:
   void start(session::RuntimeOptions options = {}) {
-    options.lockstep = true;
-    options.gui_watchdog = m_watchdog;
     options.make_devices = [this](const planning::Workcell& workcell, const std::string&,
                                   const Clock& clock) { return devices(workcell, clock); };
+    startWith(options);
+  }
+  // With devices of the test's own.
+  void startWith(session::RuntimeOptions options) {
+    options.lockstep = true;
+    options.gui_watchdog = m_watchdog;
     auto started = session::RobotRuntime::start(m_workcell, options);
     ASSERT_TRUE(started.ok()) << started.error().message;
     m_runtime = std::move(*started);

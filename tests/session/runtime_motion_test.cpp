@@ -120,13 +120,13 @@ TEST_F(RuntimeMotion, PlayGoesOnFromWhereTheArmStandsOnThePath) {
   ASSERT_EQ(m_runtime->status().player, PlayerState::kPaused);
   const double cursor = m_runtime->status().cursor;
   const auto path = m_runtime->trajectory();
-  const Eigen::VectorXd behind = path.sample(cursor - 0.3).positions - path.sample(cursor).positions;
+  const Eigen::VectorXd behind = path.sample(cursor - 0.5).positions - path.sample(cursor).positions;
   ASSERT_GT(behind.cwiseAbs().maxCoeff(), 0.01) << "far enough to matter";
   m_arm->setOffset(behind);
   step(0.1);
   const auto played = m_runtime->play();
   ASSERT_TRUE(played.ok()) << played.error().message;
-  EXPECT_NEAR(m_runtime->status().cursor, cursor - 0.3, 0.05);
+  EXPECT_NEAR(m_runtime->status().cursor, cursor - 0.5, 0.05);
   step(0.1);
   EXPECT_EQ(m_runtime->status().player, PlayerState::kPlaying);
 }

@@ -10,8 +10,10 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "planning/world/workcell.h"
+#include "session/robot/robot_runtime.h"
 #include "session/robot/virtual_robot_process.h"
 #include "session/task_runner.h"
 
@@ -37,6 +39,32 @@ inline const planning::Workcell& builtInWorkcell(const std::string& variant = {}
     if (loaded) cell = std::move(*loaded);
   }
   return cell;
+}
+
+/// A robot in lockstep that is up, its STOP released; null when it does not come up.
+inline std::unique_ptr<session::RobotRuntime> robotInLockstep(std::shared_ptr<const planning::Workcell> cell,
+                                                              session::RuntimeOptions options) {
+  options.lockstep = true;
+  options.gui_watchdog = false;
+  options.virtual_robot = virtualRobot();
+  auto started = session::RobotRuntime::start(std::move(cell), std::move(options));
+  EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error().message);
+  if (!started) return nullptr;
+  EXPECT_TRUE((*started)->waitUntilUp(20).ok());
+  EXPECT_TRUE((*started)->resetStop().ok());
+  return std::move(*started);
+}
+
+inline nlohmann::json truthOf(session::RobotRuntime& robot) {
+  const auto answer = robot.callService("/virtual_robot/truth", "{}");
+  EXPECT_TRUE(answer.ok()) << (answer.ok() ? "" : answer.error().message);
+  return answer.ok() ? nlohmann::json::parse(*answer) : nlohmann::json::object();
+}
+
+inline void expectGoals(session::RobotRuntime& robot) {
+  const auto told = truthOf(robot);
+  for (const auto& goal : told.at("goals")) EXPECT_TRUE(goal.at("reached").get<bool>()) << goal.dump();
+  EXPECT_TRUE(told.at("contacts").empty()) << told.at("contacts").dump();
 }
 
 inline std::string tableOf(const session::TaskReport& report) {

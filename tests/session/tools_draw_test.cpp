@@ -445,13 +445,13 @@ TEST(DrawTool, WaitsForAPictureAndTakesTheFirstThatComes) {
   LineTool tool;
   tool.activate(bench.document);
   EXPECT_EQ(tool.state(), DrawTool::State::kNoPicture);
-  EXPECT_EQ(tool.draft(), nullptr);
+  EXPECT_TRUE(tool.drafts().empty());
   EXPECT_FALSE(tool.onKey(SketchKey::kReturn, {}).consumed);
   EXPECT_TRUE(tool.onKey(SketchKey::kEscape, {}).finished);
   bench.history.push(addSnapshots(bench.document, {tests::snapshotOf(1, bench.scene.left)}));
   tool.documentChanged();
   EXPECT_EQ(tool.state(), DrawTool::State::kPlacing);
-  EXPECT_NE(tool.draft(), nullptr);
+  EXPECT_EQ(tool.drafts().size(), 1u);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // Pipes by their outlines, dimensions between vertices, groups, frames and numbers.
-#include <array>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -9,7 +8,7 @@
 #include "session/document/overlay_builder.h"
 #include "session/tools/measure_tool.h"
 #include "session/tools/pick_editor.h"
-#include "tests/session/synthetic_views.h"
+#include "tests/session/true_shapes.h"
 #include "vision/sketch/solids.h"
 
 namespace longarm::session {
@@ -19,34 +18,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using tests::Bench;
 using tests::Hand;
+using tests::TruePipe;
 using vision::OverlayRole;
 using vision::SketchKey;
-
-/// A pipe between two points and its outlines as a camera sees them.
-struct TruePipe {
-  Vector3d a{1.5, 0.12, 1.25}, b{1.55, 0.02, 0.85};   // Across the baseline.
-  double radius = 0.04;
-
-  Pose pose() const {
-    Pose X = Pose::Identity();
-    X.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), b - a).toRotationMatrix();
-    X.translation() = (a + b) / 2;
-    return X;
-  }
-  /// Ends of both outlines: where the surface turns away from the camera.
-  std::array<Vector2d, 4> outlines(const vision::View& view) const {
-    const Pose X = pose();
-    const Vector3d eye = X.inverse() * view.X_WC.translation();
-    const double towards = std::atan2(eye.y(), eye.x()), turn = std::acos(radius / eye.head<2>().norm()), half = (b - a).norm() / 2;
-    std::array<Vector2d, 4> ends;
-    for (int i = 0; i < 4; ++i) {
-      const double angle = towards + (i < 2 ? turn : -turn);
-      ends[static_cast<std::size_t>(i)] =
-          view.project(X * Vector3d(radius * std::cos(angle), radius * std::sin(angle), i % 2 == 0 ? -half : half)).value();
-    }
-    return ends;
-  }
-};
 
 class PipeGesture : public testing::TestWithParam<double> {};
 
@@ -81,7 +55,7 @@ TEST_P(PipeGesture, MeasuresAxisAndRadiusWithTwoStrokesPerPicture) {
     EXPECT_LT((vertex.xyz - truth.a).cross(d).norm(), 5e-4) << "on the true axis";
   }
 }
-INSTANTIATE_TEST_SUITE_P(Zooms, PipeGesture, testing::Values(1.0, 4.0));
+INSTANTIATE_TEST_SUITE_P(Zooms, PipeGesture, testing::Values(0.25, 1.0, 4.0));
 
 TEST(Solids, OutlinesOfACylinderAreWhereItsSurfaceTurnsAway) {
   Bench bench;

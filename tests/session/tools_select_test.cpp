@@ -324,7 +324,8 @@ TEST_P(ToolContract, PreviewIsAPureFunctionOfItsState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryTool, ToolContract,
-                         testing::Values(ToolKind::kSelect, ToolKind::kPoint, ToolKind::kLine));
+                         testing::Values(ToolKind::kSelect, ToolKind::kPoint, ToolKind::kLine, ToolKind::kPipe, ToolKind::kPlane,
+                                         ToolKind::kTriad, ToolKind::kMeasure));
 
 }  // namespace
 }  // namespace longarm::session

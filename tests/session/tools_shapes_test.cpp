@@ -4,7 +4,7 @@
 #include "session/document/feature_rows.h"
 #include "session/tools/plane_tool.h"
 #include "session/tools/triad_tool.h"
-#include "tests/session/synthetic_views.h"
+#include "tests/session/true_shapes.h"
 
 namespace longarm::session {
 namespace {
@@ -12,14 +12,6 @@ namespace {
 using tests::Bench;
 using tests::Hand;
 using vision::OverlayRole;
-
-/// Corners of the true plane or box in vertex order [m].
-std::vector<Eigen::Vector3d> truthOf(ToolKind kind) {
-  const Eigen::Matrix3d R = expSO3({0, 0.5, 0.6});
-  const Eigen::Vector3d o(1.3, 0, 1.02);
-  if (kind == ToolKind::kPlane) return {o + 0.25 * R.col(1), o, o + 0.2 * R.col(2)};
-  return {o, o + 0.25 * R.col(0), o + 0.2 * R.col(1), o + 0.15 * R.col(2)};
-}
 
 using Case = std::tuple<double, PaneSide, ToolKind>;
 class ShapeGesture : public testing::TestWithParam<Case> {};
@@ -29,7 +21,7 @@ TEST_P(ShapeGesture, MeasuresTheTrueShapeInOneStepPerClick) {
   Bench bench;
   Hand hand(bench.tools, zoom);
   bench.tools.setTool(kind);
-  const auto truth = truthOf(kind);
+  const auto truth = tests::trueCorners(kind);
   std::size_t clicks = 0;
   for (const PaneSide side : {first, otherSide(first)}) {
     for (const auto& corner : truth) {
@@ -47,11 +39,13 @@ TEST_P(ShapeGesture, MeasuresTheTrueShapeInOneStepPerClick) {
   const FeatureRow row = featureRow(item, measured);
   if (kind == ToolKind::kPlane) {
     ASSERT_TRUE(measured.feature->plane);
-    EXPECT_GT(std::abs(measured.feature->plane->normal.dot(expSO3({0, 0.5, 0.6}).col(0))), 0.9999);
+    EXPECT_GT(std::abs(measured.feature->plane->normal.dot(tests::shapeTurn().col(0))), 0.9999);
   } else {
     ASSERT_TRUE(measured.feature->box);
     EXPECT_LT((measured.feature->box->size - Eigen::Vector3d(0.25, 0.2, 0.15)).norm(), 1e-3);
     EXPECT_EQ(row.length_text, "250 \u00d7 200 \u00d7 150 mm");
+    EXPECT_GT(row.size_plus_minus->minCoeff(), 0);
+    EXPECT_NE(row.size_text.find(" \u00b1 "), std::string::npos) << row.size_text;
   }
   const DocumentState done = bench.document.state();
   while (bench.history.canUndo()) bench.history.undo();

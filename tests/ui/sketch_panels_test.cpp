@@ -248,6 +248,23 @@ TEST(SnapshotsPanel, OffersThePairForComparing) {
   EXPECT_EQ(dialog.shown().at<cv::Vec3b>(5, 5)[0], b->image.at<unsigned char>(5, 5));
 }
 
+TEST(CompareDialog, BlinksBetweenBothPicturesUntilItIsTold) {
+  PanelRig rig;
+  auto dark = std::make_shared<vision::Snapshot>(*tests::snapshotOf(1, rig.scene.left)), bright = std::make_shared<vision::Snapshot>(*dark);
+  bright->image = cv::Mat(dark->image.size(), CV_8UC1, cv::Scalar(220));
+  CompareDialog dialog(dark, bright, rig.appearance.theme());
+  dialog.blinkButton()->click();
+  const auto shows = [&](int grey) { return [&dialog, grey] { return dialog.shown().at<cv::Vec3b>(5, 5)[0] == grey; }; };
+  EXPECT_TRUE(shows(80)());
+  EXPECT_TRUE(SimulatedHand::waitFor(shows(220), 20));
+  EXPECT_TRUE(SimulatedHand::waitFor(shows(80), 20));
+  EXPECT_FALSE(dialog.slider()->isEnabled());
+  dialog.blinkButton()->click();
+  dialog.slider()->setValue(100);
+  EXPECT_TRUE(shows(220)());
+  EXPECT_FALSE(SimulatedHand::waitFor(shows(80), 1.2)) << "stands still again";
+}
+
 class ThirdOnCanvas : public ::testing::TestWithParam<double> {};
 
 TEST_P(ThirdOnCanvas, ShowsBothCurvesAndFlagsAClickThatIsOff) {

@@ -3,10 +3,13 @@
 #include <QListWidget>
 #include <QTableView>
 #include <QTableWidget>
+#include <QToolButton>
 
 #include "session/commands/sketch_commands.h"
 #include "tests/session/painted_views.h"
 #include "tests/ui/window_fixture.h"
+#include "ui/compare_dialog.h"
+#include "ui/snapshots_panel.h"
 
 namespace longarm {
 namespace {
@@ -71,6 +74,74 @@ TEST_F(SketchWindow, OffersMatchesAndTakesThemWithTab) {
   ASSERT_EQ(bench->document().items().size(), 1U);
   EXPECT_TRUE(bench->document().measurement(bench->document().items()[0].id).feature);
   look(QStringLiteral("match-taken"));
+}
+
+TEST_F(SketchWindow, MeasuresBetweenFeaturesThatArePickedInTheScene) {
+  openPainted();
+  const Vector3d a(-0.1, 0.05, 1.4), b(0.2, -0.1, 1.5), c(0.1, 0.15, 1.45);
+  const FeatureId first = add(vision::FeatureKind::kPoint, {a}), line = add(vision::FeatureKind::kLine, {b, c});
+  window->actions().at(ActionId::kToolMeasure)->trigger();
+  auto* view = window->scene()->view();
+  if (!view->usable()) GTEST_SKIP() << "skipped: no OpenGL";
+  view->lookFromView(this->view(PaneSide::kLeft));
+  look(QStringLiteral("scene-before"));
+  const auto pick = [&](const Vector3d& place) {
+    const auto at = view->widgetOfPoint(place);
+    ASSERT_TRUE(at);
+    QWidget* surface = view->childAt(at->toPoint());
+    ASSERT_NE(surface, nullptr);
+    hand.click(surface, surface->mapFrom(view, at->toPoint()));
+  };
+  pick(a);
+  pick(b);
+  const auto distance = bench->targeting().dimension();
+  ASSERT_TRUE(distance);
+  ASSERT_EQ(distance->points.size(), 2U);
+  EXPECT_EQ(distance->text, session::distanceBetween(bench->document(), {first, 0}, {line, 0})->text());
+  EXPECT_TRUE(bench->targeting().hint().startsWith(QStringLiteral("Distance ")));
+  look(QStringLiteral("scene-distance"));
+  pick(c);
+  EXPECT_EQ(bench->targeting().dimension()->text, session::angleAt(bench->document(), {first, 0}, {line, 0}, {line, 1})->text());
+  look(QStringLiteral("scene-angle"));
+  EXPECT_TRUE(bench->document().selection().contains(line)) << "the tool measures, it does not select";
+  bench->targeting().key(vision::SketchKey::kEscape);
+  EXPECT_FALSE(bench->targeting().dimension());
+}
+
+TEST_F(SketchWindow, KeepsALibraryWhosePicturesAreChosenPinnedComparedAndDeleted) {
+  openPainted();
+  window->findChild<QDockWidget*>(QStringLiteral("snapshots"))->raise();
+  SimulatedHand::pump(50);
+  auto* panel = window->snapshots();
+  using Button = ui::SnapshotsPanel::Button;
+  ASSERT_EQ(panel->list()->count(), 3);
+  for (int row = 0; row < 3; ++row) {
+    EXPECT_FALSE(panel->list()->item(row)->icon().isNull()) << "a thumbnail";
+    EXPECT_TRUE(panel->list()->item(row)->text().contains(QString::fromStdString(views[static_cast<std::size_t>(row)]->view.name)));
+  }
+  panel->list()->setCurrentRow(2);
+  hand.click(panel->button(Button::kPin));
+  EXPECT_TRUE(bench->document().pinned({3}));
+  hand.click(panel->button(Button::kRight));
+  EXPECT_EQ(bench->document().paneSnapshotId(PaneSide::kRight), SnapshotId{3});
+  EXPECT_FALSE(window->pictures()->pane(PaneSide::kRight)->live());
+  panel->list()->setCurrentRow(1);
+  hand.click(panel->button(Button::kCompare));
+  auto* compare = window->findChild<ui::CompareDialog*>();
+  ASSERT_NE(compare, nullptr);
+  EXPECT_TRUE(compare->isVisible());
+  EXPECT_FALSE(compare->isModal());
+  hand.click(compare->blinkButton());
+  look(QStringLiteral("compare"));
+  compare->close();
+  hand.click(panel->button(Button::kThird));
+  EXPECT_EQ(bench->targeting().third(), SnapshotId{2});
+  EXPECT_TRUE(window->pictures()->third()->isVisible());
+  hand.click(panel->button(Button::kDelete));
+  EXPECT_EQ(panel->list()->count(), 2);
+  EXPECT_FALSE(window->pictures()->third()->isVisible()) << "gone with its picture";
+  panel->list()->setCurrentRow(1);
+  EXPECT_FALSE(panel->button(Button::kDelete)->isEnabled()) << "pinned";
 }
 
 TEST_F(SketchWindow, MeasuresABoxMakesItWorldAndChecksItInAThirdPicture) {

@@ -36,7 +36,7 @@ TEST(Theme, KeepsSaturatedRedForStopAlone) {
                                 theme.selection, theme.amber, theme.magenta, theme.neutral, theme.canvas}) {
       EXPECT_FALSE(isRed(other)) << other.name().toStdString();
     }
-    for (int role = 0; role <= static_cast<int>(vision::OverlayRole::kLabel); ++role) {
+    for (int role = 0; role <= static_cast<int>(vision::OverlayRole::kOwnLink); ++role) {
       EXPECT_FALSE(isRed(theme.role(static_cast<vision::OverlayRole>(role)).color)) << "role " << role;
     }
   }

@@ -43,7 +43,8 @@ enum class OverlayRole { kSketch, kSelected, kHandle, kActiveHandle, kUnplaced, 
                          kWorld,        ///< A body of the sketched world.
                          kKeepOut,      ///< A zone that the arm does not enter.
                          kWorkspace,    ///< A zone that it does not leave.
-                         kDimension };  ///< A measured distance or angle.
+                         kDimension,    ///< A measured distance or angle.
+                         kOwnLink };    ///< Where the picture shows the robot itself.
 
 struct OverlayShape {
   enum class Kind { kPolyline, kMarker, kText, kArea } kind = Kind::kPolyline;   ///< kArea: filled, seen through.

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
+#include "core/base_motion.h"
 #include "core/ids.h"
 #include "core/motion.h"
 #include "core/pose.h"
@@ -25,6 +26,7 @@ struct View {
   std::string parent = "base_link";          ///< Frame that X_WC and every result are expressed in.
   Pose X_WC = Pose::Identity();              ///< Camera optical frame in `parent`.
   double sigma_px = 0.5;                     ///< Pick noise, 1 sigma [px].
+  std::optional<double> zoom;                ///< Setting that `camera` holds for, 0 ... 1; empty: the lens is fixed.
   /// Covariance of (rotvec [rad], translation [m]) of X_WC as a left perturbation in `parent`; zero if unknown.
   /// The two parts are split: R <- Exp(rotvec) R, p <- p + translation (the camera turns about its own centre).
   Matrix6d pose_covariance = Matrix6d::Zero();
@@ -44,6 +46,7 @@ struct Snapshot {
   double stamp_s = 0;                        ///< Monotonic time of exposure [s].
   double wall_time_s = 0;                    ///< Wall time, for display and records [s since 1970].
   JointState robot_state;                    ///< Joints at the exposure; empty for pictures from files.
+  std::optional<BaseState> base;             ///< Odometry at the exposure; empty: no base, or from files.
   std::string source;                        ///< "live", or the path of the file.
 };
 using SnapshotPtr = std::shared_ptr<const Snapshot>;

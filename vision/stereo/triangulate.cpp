@@ -173,7 +173,7 @@ Status checkInFront(const std::vector<Sighting>& sightings, const std::vector<Ra
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if ((X - rays[i].origin).dot(rays[i].direction) > 0) continue;
     return {ErrorCode::kDegenerate, "the viewing rays meet behind " + label(*sightings[i].view) +
-                                        ": the picks do not show the same point, or a view's pose is wrong"};
+                                        ": mark the same spot in all of them; if they show it, a view's pose is wrong: calibrate its camera again"};
   }
   return {};
 }

@@ -15,8 +15,8 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSmartPointer.h>
-#include <vtkTextProperty.h>
 
+#include "widgets/scene/scene_text.h"
 #include "widgets/scene/shape_geometry.h"
 #include "widgets/scene/vtk_convert.h"
 
@@ -106,18 +106,6 @@ vtkSmartPointer<vtkActor> makeEllipsoid(const vision::FeatureVertex& vertex, con
   return actor;
 }
 
-vtkSmartPointer<vtkBillboardTextActor3D> makeName(const std::string& text, const Eigen::Vector3d& at,
-                                                  const Eigen::Vector3d& color) {
-  auto actor = vtkSmartPointer<vtkBillboardTextActor3D>::New();
-  actor->SetInput(text.c_str());
-  actor->SetPosition(at.x(), at.y(), at.z());
-  actor->SetDisplayOffset(8, 6);
-  actor->GetTextProperty()->SetFontSize(14);
-  actor->GetTextProperty()->SetColor(color[0], color[1], color[2]);
-  actor->GetTextProperty()->SetShadow(1);
-  return actor;
-}
-
 }  // namespace
 
 Eigen::Matrix3d ellipsoidAxes(const Eigen::Matrix3d& covariance) {
@@ -145,7 +133,9 @@ void SketchRep::update(const std::vector<SketchItem>& items) {
     const std::vector<Eigen::Vector3d> corners = cornersOf(item.feature);
     const bool finite = std::all_of(corners.begin(), corners.end(), [](const auto& p) { return p.allFinite(); });
     if (!item.visible || corners.empty() || !finite) continue;
-    const Eigen::Vector3d color = item.selected ? m_impl->look.selected_color : m_impl->look.color;
+    const Eigen::Vector3d color = item.stale      ? m_impl->look.stale_color
+                                  : item.selected ? m_impl->look.selected_color
+                                                  : m_impl->look.color;
     addProp(makeMarks(corners, edgesOf(item.feature.kind), item.feature.vertices.size(), color, item.selected));
     if (const auto solid = makeSolid(item.feature, color)) addProp(solid);
     if (m_impl->look.ellipsoids) {
@@ -154,7 +144,7 @@ void SketchRep::update(const std::vector<SketchItem>& items) {
         if (ellipsoid != nullptr) addProp(ellipsoid);
       }
     }
-    if (m_impl->look.names && !item.feature.name.empty()) addProp(makeName(item.feature.name, corners[0], color));
+    if (m_impl->look.names && !item.feature.name.empty()) addProp(internal::makeText(item.feature.name, corners[0], color));
   }
 }
 

@@ -15,12 +15,14 @@ struct SketchItem {
   vision::Feature feature;               ///< Expressed in the world frame.
   bool selected = false;
   bool visible = true;
+  bool stale = false;  ///< Drawn grey: the base is no longer where it was measured from.
 };
 
 struct SketchLook {
   double ellipsoid_scale = 1;            ///< Enlarges the ellipsoids (1: true size) so that small ones can be seen.
   bool names = true, ellipsoids = true;
-  Eigen::Vector3d color{0.2, 0.85, 0.95}, selected_color{1.0, 0.6, 0.1};   ///< RGB 0 ... 1.
+  Eigen::Vector3d color{0.2, 0.85, 0.95}, selected_color{1.0, 0.6, 0.1},
+      stale_color{0.55, 0.5, 0.55};  ///< RGB 0 ... 1.
 };
 
 /// Semi-axes of the ellipsoid that holds 95 % of a 3-D normal: sqrt(chi2_3(0.95) * eigenvalue).

@@ -22,8 +22,10 @@ RosbridgeCamera::RosbridgeCamera(std::string name, RosbridgeRobot robot, CameraS
     : LinkedDevice<Camera>(name, std::move(robot)),
       m_settings(settings),
       m_image_topic(topics.image(name)),
-      m_zoom_topic(topics.zoom(name)) {
-  if (m_settings.zooms) link().advertise(m_zoom_topic, rosbridge::Float64Message::kType);
+      m_zoom(name, "zoom", topics.zoom(name), topics.zoomState(name)),
+      m_focus(name, "focus", topics.focus(name), topics.focusState(name)) {
+  if (!m_settings.zooms) return;
+  for (const auto& topic : {topics.zoom(name), topics.focus(name)}) link().advertise(topic, rosbridge::Float64Message::kType);
 }
 
 RosbridgeCamera::~RosbridgeCamera() { close(); }
@@ -73,15 +75,49 @@ Status RosbridgeCamera::take(const rosbridge::Publish& message, double received_
   return {};
 }
 
+Status RosbridgeCamera::onOpen() {
+  if (m_settings.zooms) {
+    m_zoom.connect(link());
+    m_focus.connect(link());
+  }
+  return LinkedDevice<Camera>::onOpen();
+}
+
+Status RosbridgeCamera::onClose() {
+  if (m_settings.zooms) {
+    m_zoom.disconnect(link());
+    m_focus.disconnect(link());
+  }
+  return LinkedDevice<Camera>::onClose();
+}
+
+Status RosbridgeCamera::command(LensState& lens, const char* doing, double wanted) {
+  if (auto status = link().requireUp(); !status) return {status.error().code, name() + ": " + status.error().message};
+  return runner().configure(doing, [&] { return lens.command(link(), wanted, robot().clock->now_s()); });
+}
+
 Status RosbridgeCamera::setZoom(double zoom01) {
   if (!m_settings.zooms) return Camera::setZoom(zoom01);
-  if (auto status = link().requireUp(); !status) return {status.error().code, name() + ": " + status.error().message};
-  return runner().configure("zooming", [&]() -> Status {
-    if (!(zoom01 >= 0 && zoom01 <= 1)) {
-      return {ErrorCode::kOutOfLimits, name() + ": zoom " + formatNumber(zoom01) + " is not within 0 ... 1"};
-    }
-    return link().postMotion(rosbridge::publish(m_zoom_topic, rosbridge::Float64Message{zoom01}));
-  });
+  if (!(zoom01 >= 0)) return {ErrorCode::kOutOfLimits, name() + ": zoom " + formatNumber(zoom01) + " is not within 0 ... 1"};
+  return command(m_zoom, "zooming", zoom01);
+}
+
+Status RosbridgeCamera::setFocus(double focus01) {
+  if (!m_settings.zooms) return Camera::setFocus(focus01);
+  if (!(focus01 >= 0)) return {ErrorCode::kOutOfLimits, name() + ": focus " + formatNumber(focus01) + " is not within 0 ... 1"};
+  return command(m_focus, "focusing", focus01);
+}
+
+Status RosbridgeCamera::focusItself() { return m_settings.zooms ? command(m_focus, "focusing", -1) : Camera::focusItself(); }
+
+void RosbridgeCamera::haltLens() noexcept {
+  if (!m_settings.zooms) return;
+  try {
+    m_zoom.halt(link(), robot().clock->now_s());
+    m_focus.halt(link(), robot().clock->now_s());
+  } catch (const std::exception& e) {
+    runner().trouble({ErrorCode::kInternal, std::string("stopping the lens: ") + e.what()});
+  }
 }
 
 }  // namespace longarm::hardware

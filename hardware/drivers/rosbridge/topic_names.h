@@ -23,8 +23,13 @@ class TopicNames {
   std::string gripperCommand() const { return named("/gripper_controller/command"); }
   std::string gripperHolding() const { return named("/gripper_controller/holding"); }
   std::string panTiltCommand(const std::string& name) const { return named("/pan_tilt/" + name + "/command"); }
+  std::string driveCommand() const { return named("/cmd_vel"); }
+  std::string odometry() const { return named("/odom"); }
   std::string image(const std::string& camera) const { return named("/camera/" + camera + "/image/compressed"); }
   std::string zoom(const std::string& camera) const { return named("/camera/" + camera + "/zoom"); }
+  std::string zoomState(const std::string& camera) const { return named("/camera/" + camera + "/zoom_state"); }
+  std::string focus(const std::string& camera) const { return named("/camera/" + camera + "/focus"); }
+  std::string focusState(const std::string& camera) const { return named("/camera/" + camera + "/focus_state"); }
 
  private:
   std::string named(const std::string& usual) const {

@@ -5,6 +5,7 @@
 #include "planning/macros/macro.h"
 #include "tests/planning/pipe_scene.h"
 #include "tests/widgets/scene/scene_rig.h"
+#include "widgets/scene/dimension_rep.h"
 #include "widgets/scene/frustum_rep.h"
 #include "widgets/scene/ground_grid_rep.h"
 #include "widgets/scene/lens_warp.h"
@@ -91,6 +92,29 @@ TEST_F(SceneRig, SketchedLinesEndAtTheirVerticesAndHiddenOnesAreGone) {
   EXPECT_NEAR(box.x + box.width, b.x(), 6);
   line.visible = false;
   sketch.update({line});
+  EXPECT_EQ(cv::countNonZero(drawn(shot())), 0);
+}
+
+TEST_F(SceneRig, AMeasuredWayRunsFromPlaceToPlaceWithItsTextAtTheMiddle) {
+  DimensionRep dimension;
+  dimension.addTo(renderer());
+  const Eigen::Vector3d a(0, 0.4, 0.2), b(0.2, -0.4, -0.1);
+  dimension.update({a, b}, {});
+  const cv::Mat bare = drawn(shot());
+  const cv::Rect way = extent(bare);
+  const Eigen::Vector2d at_a = *m_view.project(a), at_b = *m_view.project(b), middle = *m_view.project((a + b) / 2);
+  EXPECT_NEAR(way.x, at_a.x(), 6);
+  EXPECT_NEAR(way.x + way.width, at_b.x(), 6);
+  EXPECT_GT(bare.at<uchar>(cv::Point(static_cast<int>(std::lround(middle.x())), static_cast<int>(std::lround(middle.y())))), 0);
+  dimension.update({a, b}, "402.1 mm");
+  const cv::Mat text = drawn(shot()) - bare;
+  ASSERT_GT(cv::countNonZero(text), 40);
+  const cv::Rect written = extent(text);
+  EXPECT_LT(std::abs(written.x - middle.x()), 30);
+  EXPECT_LT(std::abs(written.y + written.height - middle.y()), 30);
+  dimension.update({}, "402.1 mm");
+  EXPECT_EQ(cv::countNonZero(drawn(shot())), 0);
+  dimension.update({a, Eigen::Vector3d::Constant(std::nan(""))}, "?");
   EXPECT_EQ(cv::countNonZero(drawn(shot())), 0);
 }
 
