@@ -4,7 +4,6 @@
 
 #include <QComboBox>
 #include <QGridLayout>
-#include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
@@ -41,33 +40,10 @@ std::optional<Way> wayOf(int key) {
 
 }  // namespace
 
-DrivePanel::DrivePanel(Workbench& bench, QWidget* parent) : QWidget(parent), m_bench(bench), m_state(new ElidedLabel(this)) {
-  setFocusPolicy(Qt::StrongFocus);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(6, 6, 6, 4);
-  column->setSpacing(4);
-  auto* row = new QHBoxLayout;
-  row->setSpacing(12);
-  row->addWidget(makeChoices(), 1);
-  row->addWidget(makePad());
-  column->addLayout(row, 1);
-  column->addWidget(m_state);
-  auto& drive = m_bench.drive();
-  connect(&drive, &session::DriveController::refused, this, [this](const QString& sentence) {
-    m_refusal = sentence;
-    refresh();
-  });
-  connect(&drive, &session::DriveController::changed, this, [this] {
-    if (m_bench.drive().held()) m_refusal.clear();
-    refresh();
-  });
-  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &DrivePanel::refresh);
-  connect(&m_bench.robot(), &RobotSession::linkChanged, this, &DrivePanel::refresh);
-  connect(&m_bench.robot(), &RobotSession::stopChanged, this, &DrivePanel::refresh);
+DrivePanel::DrivePanel(Workbench& bench, QWidget* parent) : HoldPanel(bench, bench.drive(), parent) {
+  m_row->addWidget(makeChoices(), 1);
+  m_row->addWidget(makePad());
   connect(&m_bench.robot(), &RobotSession::attached, this, &DrivePanel::fillCameras);
-  connect(qGuiApp, &QGuiApplication::applicationStateChanged, this, [this](Qt::ApplicationState state) {
-    if (state != Qt::ApplicationActive) letGo();
-  });
   fillCameras();
 }
 
@@ -152,8 +128,6 @@ void DrivePanel::fillCameras() {
   refresh();
 }
 
-QString DrivePanel::message() const { return m_state->fullText(); }
-
 QString DrivePanel::odometry() const {
   const auto& base = m_bench.robot().status().base;
   if (!base) return tr("no odometry");
@@ -186,11 +160,6 @@ void DrivePanel::refresh() {
           : tr("Hold a button, or an arrow key here. The arm is held while the base moves."));
 }
 
-void DrivePanel::letGo() {
-  m_keys.clear();
-  m_bench.drive().releaseAll();
-}
-
 void DrivePanel::keyPressEvent(QKeyEvent* event) {
   const auto way = wayOf(event->key());
   if (!way) return QWidget::keyPressEvent(event);
@@ -206,16 +175,6 @@ void DrivePanel::keyReleaseEvent(QKeyEvent* event) {
   const Way way = held->second;
   m_keys.erase(held);
   m_bench.drive().release(way);
-}
-
-void DrivePanel::hideEvent(QHideEvent* event) {
-  QWidget::hideEvent(event);
-  letGo();
-}
-
-void DrivePanel::focusOutEvent(QFocusEvent* event) {
-  QWidget::focusOutEvent(event);
-  if (!m_keys.empty()) letGo();
 }
 
 }  // namespace longarm::ui

@@ -6,10 +6,8 @@
 #include <map>
 #include <optional>
 
-#include <QWidget>
-
 #include "session/controllers/drive_controller.h"
-#include "ui/workbench.h"
+#include "ui/hold_panel.h"
 
 class QComboBox;
 class QLabel;
@@ -18,11 +16,8 @@ class QToolButton;
 
 namespace longarm::ui {
 
-class ElidedLabel;
-
-/// With the panel focused the arrow keys drive.  Everything is let go of when the panel is hidden, the focus
-/// goes or the window is left.  GUI thread only.
-class DrivePanel final : public QWidget {
+/// With the panel focused the arrow keys drive.  GUI thread only.
+class DrivePanel final : public HoldPanel {
   Q_OBJECT
 
  public:
@@ -31,7 +26,6 @@ class DrivePanel final : public QWidget {
   explicit DrivePanel(Workbench& bench, QWidget* parent = nullptr);
   QToolButton* button(Way way) const { return m_buttons.at(way); }
   QComboBox* cameras() const { return m_cameras; }
-  QString message() const;
 
  Q_SIGNALS:
   /// Show it live in the left pane.
@@ -40,25 +34,21 @@ class DrivePanel final : public QWidget {
  protected:
   void keyPressEvent(QKeyEvent* event) override;
   void keyReleaseEvent(QKeyEvent* event) override;
-  void hideEvent(QHideEvent* event) override;
-  void focusOutEvent(QFocusEvent* event) override;
 
  private:
   QWidget* makePad();
   QWidget* makeChoices();
   void fillCameras();
-  void refresh();
-  void letGo();
+  void refresh() override;
+  bool keyHeld() const override { return !m_keys.empty(); }
+  void forgetKeys() override { m_keys.clear(); }
   QString odometry() const;
 
-  Workbench& m_bench;
   std::map<Way, QToolButton*> m_buttons;
   std::map<int, Way> m_keys;  // that are held
   QSlider* m_speed;
   QLabel *m_speed_text, *m_odometry;
   QComboBox* m_cameras;
-  ElidedLabel* m_state;
-  QString m_refusal;
 };
 
 }  // namespace longarm::ui

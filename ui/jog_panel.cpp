@@ -5,7 +5,6 @@
 #include <QButtonGroup>
 #include <QCheckBox>
 #include <QGridLayout>
-#include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
@@ -60,39 +59,14 @@ std::optional<KeyWay> wayOf(int key, JogFrame frame) {
 
 }  // namespace
 
-JogPanel::JogPanel(Workbench& bench, QWidget* parent) : QWidget(parent), m_bench(bench) {
-  setFocusPolicy(Qt::StrongFocus);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(6, 6, 6, 4);
-  column->setSpacing(4);
-  auto* row = new QHBoxLayout;
-  row->setSpacing(12);
-  row->addWidget(makeChoices());
+JogPanel::JogPanel(Workbench& bench, QWidget* parent) : HoldPanel(bench, bench.jog(), parent) {
+  m_row->addWidget(makeChoices());
   m_axes = new QWidget(this);
   m_grid = new QGridLayout(m_axes);
   m_grid->setContentsMargins(0, 0, 0, 0);
   m_grid->setSpacing(4);
-  row->addWidget(m_axes, 1);
-  column->addLayout(row, 1);
-  m_state = new ElidedLabel(this);
-  column->addWidget(m_state);
-
-  auto& jog = m_bench.jog();
-  connect(&jog, &session::JogController::refused, this, [this](const QString& sentence) {
-    m_refusal = sentence;
-    refresh();
-  });
-  connect(&jog, &session::JogController::changed, this, [this] {
-    if (m_bench.jog().held()) m_refusal.clear();
-    refresh();
-  });
-  connect(&m_bench.robot(), &RobotSession::polledSlowly, this, &JogPanel::refresh);
-  connect(&m_bench.robot(), &RobotSession::linkChanged, this, &JogPanel::refresh);
-  connect(&m_bench.robot(), &RobotSession::stopChanged, this, &JogPanel::refresh);
+  m_row->addWidget(m_axes, 1);
   connect(&m_bench.robot(), &RobotSession::attached, this, &JogPanel::fillAxes);
-  connect(qGuiApp, &QGuiApplication::applicationStateChanged, this, [this](Qt::ApplicationState state) {
-    if (state != Qt::ApplicationActive) m_bench.jog().release();
-  });
   setFrame(JogFrame::kBase);
 }
 
@@ -170,7 +144,7 @@ QToolButton* JogPanel::holdButton(const QString& text, int axis, int way) {
     m_bench.jog().setFrame(m_bench.jog().frame(), m_bench.paneCamera(vision::PaneSide::kLeft));
     m_bench.jog().hold(axis, way);
   });
-  connect(button, &QToolButton::released, &m_bench.jog(), &session::JogController::release);
+  connect(button, &QToolButton::released, &m_bench.jog(), &session::JogController::letGo);
   return button;
 }
 
@@ -186,7 +160,7 @@ void JogPanel::addPair(const QString& name, const QString& minus, const QString&
 }
 
 void JogPanel::fillAxes() {
-  m_bench.jog().release();
+  m_bench.jog().letGo();
   for (const auto& pair : m_pairs) {
     for (QWidget* widget : {static_cast<QWidget*>(pair.name), static_cast<QWidget*>(pair.minus), static_cast<QWidget*>(pair.plus)}) {
       widget->hide();
@@ -213,8 +187,6 @@ QToolButton* JogPanel::button(int axis, int way) const {
   }
   return nullptr;
 }
-
-QString JogPanel::message() const { return m_state->fullText(); }
 
 void JogPanel::refresh() {
   const auto& status = m_bench.robot().status();
@@ -249,20 +221,7 @@ void JogPanel::keyPressEvent(QKeyEvent* event) {
 void JogPanel::keyReleaseEvent(QKeyEvent* event) {
   if (event->isAutoRepeat() || event->key() != m_key) return QWidget::keyReleaseEvent(event);
   m_key = 0;
-  m_bench.jog().release();
-}
-
-void JogPanel::hideEvent(QHideEvent* event) {
-  QWidget::hideEvent(event);
-  m_key = 0;
-  m_bench.jog().release();
-}
-
-void JogPanel::focusOutEvent(QFocusEvent* event) {
-  QWidget::focusOutEvent(event);
-  if (m_key == 0) return;
-  m_key = 0;
-  m_bench.jog().release();
+  m_bench.jog().letGo();
 }
 
 }  // namespace longarm::ui

@@ -5,11 +5,9 @@
 
 #include <vector>
 
-#include <QWidget>
-
 #include "session/controllers/jog_controller.h"
 #include "ui/actions.h"
-#include "ui/workbench.h"
+#include "ui/hold_panel.h"
 
 class QButtonGroup;
 class QCheckBox;
@@ -20,11 +18,9 @@ class QToolButton;
 
 namespace longarm::ui {
 
-class ElidedLabel;
-
 /// With the panel focused the arrow keys and Page Up / Down jog along the frame's axes, with Shift about them.
-/// Everything is let go of when the panel is hidden or the window loses the focus.  GUI thread only.
-class JogPanel final : public QWidget {
+/// GUI thread only.
+class JogPanel final : public HoldPanel {
   Q_OBJECT
 
  public:
@@ -33,13 +29,10 @@ class JogPanel final : public QWidget {
   void setFrame(planning::JogFrame frame);
   /// The button that jogs axis (as JogController::hold) one way; null when this frame has none.
   QToolButton* button(int axis, int way) const;
-  QString message() const;
 
  protected:
   void keyPressEvent(QKeyEvent* event) override;
   void keyReleaseEvent(QKeyEvent* event) override;
-  void hideEvent(QHideEvent* event) override;
-  void focusOutEvent(QFocusEvent* event) override;
 
  private:
   struct Pair {
@@ -51,20 +44,19 @@ class JogPanel final : public QWidget {
   void fillAxes();
   void addPair(const QString& name, const QString& minus, const QString& plus, int axis);
   QToolButton* holdButton(const QString& text, int axis, int way);
-  void refresh();
+  void refresh() override;
+  bool keyHeld() const override { return m_key != 0; }
+  void forgetKeys() override { m_key = 0; }
   void showSpeed();
 
-  Workbench& m_bench;
   QButtonGroup* m_frames;
   QSlider* m_speed;
   QLabel* m_speed_text;
   QCheckBox* m_creep;
   QWidget* m_axes;
   QGridLayout* m_grid;
-  ElidedLabel* m_state;
   std::vector<Pair> m_pairs;
   int m_key = 0;                         // that is held
-  QString m_refusal;
 };
 
 }  // namespace longarm::ui

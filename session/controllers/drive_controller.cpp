@@ -6,22 +6,11 @@
 
 namespace longarm::session {
 
-namespace {
-
-constexpr int kRepeat_ms = 50;  // a command lives for 200 ms
-
-}  // namespace
-
-DriveController::DriveController(QObject* parent) : QObject(parent) {
-  m_timer.setInterval(kRepeat_ms);
-  m_timer.setTimerType(Qt::PreciseTimer);
-  connect(&m_timer, &QTimer::timeout, this, &DriveController::send);
-}
+DriveController::DriveController(QObject* parent) : DeadManSwitch(parent) {}
 
 void DriveController::setRobot(Send send, Release release, const BaseLimits& limits) {
-  releaseAll();
+  setRelease(std::move(release));
   m_send = std::move(send);
-  m_release = std::move(release);
   m_limits = limits;
 }
 
@@ -38,36 +27,18 @@ BaseTwist DriveController::wanted() const {
 }
 
 void DriveController::hold(Way way) {
-  if (!m_held.insert(way).second) return;
-  m_timer.start();
-  Q_EMIT changed();
-  send();
+  if (m_held.insert(way).second) repeat();
 }
 
 void DriveController::release(Way way) {
-  if (m_held.erase(way) == 0) return;
-  if (m_held.empty()) {
-    m_timer.stop();
-    if (m_release) m_release();
-  }
+  if (m_held.count(way) == 0) return;
+  if (m_held.size() == 1) return letGo();
+  m_held.erase(way);
   Q_EMIT changed();
 }
 
-void DriveController::releaseAll() {
-  m_timer.stop();
-  if (m_held.empty()) return;
-  m_held.clear();
-  if (m_release) m_release();
-  Q_EMIT changed();
-}
-
-void DriveController::send() {
-  if (m_held.empty()) return;
-  const Status status =
-      m_send ? m_send(wanted()) : Status(ErrorCode::kDisconnected, "Drive: no robot is connected.");
-  if (status) return;
-  releaseAll();
-  Q_EMIT refused(QString::fromStdString(status.error().message));
+Status DriveController::send() {
+  return m_send ? m_send(wanted()) : Status(ErrorCode::kDisconnected, "Drive: no robot is connected.");
 }
 
 }  // namespace longarm::session

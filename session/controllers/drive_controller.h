@@ -6,24 +6,18 @@
 #include <functional>
 #include <set>
 
-#include <QObject>
-#include <QString>
-#include <QTimer>
-
 #include "core/base_motion.h"
-#include "core/result.h"
+#include "session/controllers/dead_man_switch.h"
 
 namespace longarm::session {
 
-/// A dead man's switch: stops repeating on release(), on any refusal, and when whoever holds it says that the
-/// window was left.  Directions held together add up.  GUI thread only.
-class DriveController final : public QObject {
+/// Directions held together add up.  GUI thread only.
+class DriveController final : public DeadManSwitch {
   Q_OBJECT
 
  public:
   enum class Way { kForward, kBack, kLeft, kRight, kTurnLeft, kTurnRight };
   using Send = std::function<Status(const BaseTwist& twist)>;
-  using Release = std::function<void()>;
 
   explicit DriveController(QObject* parent = nullptr);
 
@@ -34,24 +28,18 @@ class DriveController final : public QObject {
 
   void hold(Way way);
   void release(Way way);
-  void releaseAll();
-  bool held() const { return !m_held.empty(); }
+  bool held() const override { return !m_held.empty(); }
   /// What the held directions come to.
   BaseTwist wanted() const;
 
- Q_SIGNALS:
-  void refused(const QString& sentence);
-  void changed();  ///< Held or let go of.
-
  private:
-  void send();
+  Status send() override;
+  void forget() override { m_held.clear(); }
 
   Send m_send;
-  Release m_release;
   BaseLimits m_limits;
   double m_speed = 0.3;
   std::set<Way> m_held;
-  QTimer m_timer;
 };
 
 }  // namespace longarm::session

@@ -6,24 +6,19 @@
 #include <functional>
 #include <optional>
 
-#include <QObject>
 #include <QString>
-#include <QTimer>
 
-#include "core/result.h"
 #include "planning/jog/jog_command.h"
+#include "session/controllers/dead_man_switch.h"
 
 namespace longarm::session {
 
-/// A dead man's switch: stops repeating on release(), on any refusal and when the application loses the focus.
 /// GUI thread only.
-class JogController final : public QObject {
+class JogController final : public DeadManSwitch {
   Q_OBJECT
 
  public:
   using Send = std::function<Status(const planning::JogCommand& command)>;
-  using Release = std::function<void()>;
-
   explicit JogController(QObject* parent = nullptr);
 
   /// Where commands go; empty: no robot.
@@ -37,25 +32,19 @@ class JogController final : public QObject {
   /// @param axis 0 ... 2 along x, y, z of the frame, 3 ... 5 about them; kJoint: the joint's index.
   /// @param way +1 or -1.
   void hold(int axis, int way);
-  void release();
-  bool held() const { return m_held.has_value(); }
-
- Q_SIGNALS:
-  void refused(const QString& sentence);
-  void changed();                                      ///< Held or let go of.
+  bool held() const override { return m_held.has_value(); }
 
  private:
-  void send();
+  Status send() override;
+  void forget() override { m_held.reset(); }
   planning::JogCommand commandOf(int axis, int way) const;
 
   Send m_send;
-  Release m_release;
   planning::JogFrame m_frame = planning::JogFrame::kBase;
   QString m_camera;
   double m_speed = 0.3;
   bool m_through_contact = false;
   std::optional<std::pair<int, int>> m_held;           // axis, way
-  QTimer m_timer;
 };
 
 }  // namespace longarm::session

@@ -205,7 +205,7 @@ std::optional<planning::PlanContext> PlanController::contextWithout(FeatureId ta
 void PlanController::start(const planning::Macro& macro, const planning::MacroInfo& info, std::vector<Eigen::VectorXd> avoid) {
   planning::PlanContext context = *contextOf(QString::fromStdString(info.name));
   context.avoid = avoid;
-  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world(), {}};
+  Request request{++m_generation, info.name, targetOf(QString::fromStdString(info.name)), {}, std::move(avoid), m_document.world(), {}, {}, {}};
   if (info.takes) request.feature = *m_document.selectedFeature();
   run(macro, std::move(context), std::move(request));
 }
@@ -230,7 +230,7 @@ Status PlanController::planGiven(const QString& name, GivenFeature given) {
     context->objects = obstaclesOf(m_document.world(), root, {}, given.carried);
     context->held.clear();
   }
-  Request request{++m_generation, info.name, {}, given.feature, {}, m_document.world(), std::move(given)};
+  Request request{++m_generation, info.name, {}, given.feature, {}, m_document.world(), std::move(given), {}, {}};
   run(*macro, std::move(*context), std::move(request));
   return {};
 }
