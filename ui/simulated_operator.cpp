@@ -4,7 +4,6 @@
 
 #include <QPushButton>
 #include <QToolButton>
-#include <nlohmann/json.hpp>
 
 #include "session/controllers/snapshot_maker.h"
 
@@ -20,19 +19,6 @@ constexpr int kTurns = 12;
 
 Status failed(const QString& sentence) { return {ErrorCode::kNoSolution, sentence.toStdString()}; }
 
-Result<Pose> poseFrom(const nlohmann::json& json) {
-  try {
-    const auto& xyz = json.at("xyz");
-    const auto& q = json.at("quaternion_xyzw");
-    Pose X = Pose::Identity();
-    X.translation() = Eigen::Vector3d(xyz.at(0), xyz.at(1), xyz.at(2));
-    X.linear() = Eigen::Quaterniond(q.at(3), q.at(0), q.at(1), q.at(2)).normalized().toRotationMatrix();
-    return X;
-  } catch (const nlohmann::json::exception& problem) {
-    return {ErrorCode::kInvalidInput, std::string("A pose of the virtual robot: ") + problem.what()};
-  }
-}
-
 QToolButton* buttonOf(QWidget* within, QAction* action) {
   for (auto* button : within->findChildren<QToolButton*>()) {
     if (button->defaultAction() == action && button->isVisible()) return button;
@@ -47,28 +33,21 @@ Result<SimulatedOperator::Truth> SimulatedOperator::look() const {
   if (runtime == nullptr) return {ErrorCode::kDisconnected, "No robot is connected."};
   const auto answer = runtime->callService("/virtual_robot/truth", "{}", kTruth_s);
   if (!answer) return answer.error();
-  const auto json = nlohmann::json::parse(*answer, nullptr, false);
-  if (json.is_discarded() || !json.is_object())
-    return {ErrorCode::kInvalidInput, "The virtual robot's truth is no JSON object."};
-  Truth result;
-  result.held = json.value("held", std::string());
-  for (const auto& object : json.value("objects", nlohmann::json::array())) {
-    const auto X_WO = poseFrom(object.value("pose", nlohmann::json::object()));
-    if (!X_WO) return X_WO.error();
-    result.objects[object.value("name", std::string())] = *X_WO;
-  }
-  const auto links = json.value("links", nlohmann::json::object());
+  auto truth = session::parseTruth(*answer);
+  if (!truth) return truth;
   for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
-    const auto* camera = runtime->workcell().camera(m_bench.paneCamera(side).toStdString());
-    if (camera == nullptr || !links.contains(camera->link)) {
-      return {ErrorCode::kNotFound, "The virtual robot does not say where camera " +
-                                        m_bench.paneCamera(side).toStdString() + " is."};
+    const std::string name = m_bench.paneCamera(side).toStdString();
+    const auto* camera = runtime->workcell().camera(name);
+    if (camera == nullptr || truth->links.count(camera->link) == 0) {
+      return {ErrorCode::kNotFound, "The virtual robot does not say where camera " + name + " is."};
     }
-    const auto X_WC = poseFrom(links.at(camera->link));
-    if (!X_WC) return X_WC.error();
-    result.X_WC[static_cast<std::size_t>(side)] = *X_WC;
   }
-  return result;
+  return truth;
+}
+
+Pose SimulatedOperator::cameraPose(PaneSide side, const Truth& now) const {
+  const auto* camera = m_bench.robot().runtime()->workcell().camera(m_bench.paneCamera(side).toStdString());
+  return now.links.at(camera->link);
 }
 
 Result<Eigen::Vector2d> SimulatedOperator::see(PaneSide side, const Truth& now,
@@ -79,7 +58,7 @@ Result<Eigen::Vector2d> SimulatedOperator::see(PaneSide side, const Truth& now,
   if (!zoom) return zoom.error();
   const auto view = session::cameraView(runtime.workcell(), camera, *runtime.jointState(), *zoom);
   if (!view) return view.error();
-  return view->camera.project(now.X_WC[static_cast<std::size_t>(side)].inverse() * p_W);
+  return view->camera.project(cameraPose(side, now).inverse() * p_W);
 }
 
 Status SimulatedOperator::waitForLink(double timeout_s) {
@@ -121,7 +100,7 @@ void SimulatedOperator::turnTowards(PaneSide side, const Truth& now, const Eigen
   if (at && canvas->rect().contains(at->toPoint())) {
     m_hand.doubleClick(canvas, *at);
   } else {
-    const Eigen::Vector3d p_C = now.X_WC[static_cast<std::size_t>(side)].inverse() * p_W;
+    const Eigen::Vector3d p_C = cameraPose(side, now).inverse() * p_W;
     for (int i = 0; i < 3; ++i)
       m_hand.key(canvas, p_C.x() > 0 ? Qt::Key_Right : Qt::Key_Left, Qt::ShiftModifier);
     for (int i = 0; i < 2; ++i)

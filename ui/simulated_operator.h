@@ -4,17 +4,15 @@
 /// SimulatedOperator: what an operator does in the window, by mouse alone; for the demonstration and for
 /// tests.
 
-#include <array>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <QString>
 
-#include "core/pose.h"
 #include "core/result.h"
+#include "session/task/task_truth.h"
 #include "ui/main_window.h"
 #include "ui/simulated_hand.h"
 
@@ -29,11 +27,8 @@ class SimulatedOperator final {
   using Points =
       std::vector<Eigen::Vector3d>;  ///< In the world frame: the robot's root where it started [m].
 
-  struct Truth {
-    std::array<Pose, 2> X_WC;             ///< Left and right pane's camera.
-    std::map<std::string, Pose> objects;  ///< By name, X_WO.
-    std::string held;
-  };
+  /// What the virtual robot's judge knows; with the cameras of both panes among its links.
+  using Truth = session::TaskTruth;
 
   SimulatedOperator(MainWindow& window, int pause_ms)
       : m_window(window), m_bench(window.bench()), m_hand(pause_ms) {}
@@ -63,6 +58,7 @@ class SimulatedOperator final {
   SimulatedHand& hand() { return m_hand; }
 
  private:
+  Pose cameraPose(vision::PaneSide side, const Truth& now) const;
   bool inPicture(vision::PaneSide side, const Truth& now, const Points& points) const;
   QString panTiltOf(vision::PaneSide side) const;
   void turnTowards(vision::PaneSide side, const Truth& now, const Eigen::Vector3d& p_W);

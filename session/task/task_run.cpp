@@ -116,9 +116,9 @@ Status TaskRun::start() {
 
 double TaskRun::elapsed() const { return m_runtime->clock().now_s() - m_started_s; }
 
-bool TaskRun::stage(const char* name, StageResult (TaskRun::*run)(), TaskReport& report) {
+bool TaskRun::stage(const char* name, StageResult (TaskRun::*work)(), TaskReport& report) {
   const double begin = elapsed();
-  const auto result = (this->*run)();
+  const auto result = (this->*work)();
   report.stages.push_back({name, result.ok(), elapsed() - begin, result ? *result : result.error().message});
   if (result) return true;
   report.errors.push_back(std::string(name) + ": " + result.error().message);

@@ -44,7 +44,7 @@ class TaskRun {
   StageResult connect();
   /// One thing to do: marks it, plans, plays, and takes hold if that is wanted.  False: a stage failed.
   bool step(const planning::ScenarioStep& step, TaskReport& report);
-  bool stage(const char* name, StageResult (TaskRun::*run)(), TaskReport& report);
+  bool stage(const char* name, StageResult (TaskRun::*work)(), TaskReport& report);
   StageResult aim();
   StageResult snapshot();
   StageResult measure();

@@ -11,6 +11,15 @@
 
 namespace longarm::testing {
 
+/// The application that an event loop needs.
+class TestApplication {
+ private:
+  int m_argc = 1;
+  char m_name[5] = "test";
+  char* m_argv[2] = {m_name, nullptr};
+  QCoreApplication m_application{m_argc, m_argv};
+};
+
 class EventLoopTest : public ::testing::Test {
  protected:
   /// Runs events until `condition` holds.  @returns whether it did within a generous time.
@@ -24,10 +33,7 @@ class EventLoopTest : public ::testing::Test {
   }
 
  private:
-  int m_argc = 1;
-  char m_name[5] = "test";
-  char* m_argv[2] = {m_name, nullptr};
-  QCoreApplication m_application{m_argc, m_argv};
+  TestApplication m_application;
 };
 
 }  // namespace longarm::testing

@@ -7,6 +7,7 @@
 
 #include "planning/macros/accuracy.h"
 #include "session/controllers/plan_controller.h"
+#include "tests/session/event_loop.h"
 #include "tests/session/synthetic_views.h"
 
 namespace longarm::session {
@@ -14,10 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-class PlanControllerTest : public ::testing::Test {
+class PlanControllerTest : public longarm::testing::EventLoopTest {
  protected:
   void SetUp() override {
-    if (QCoreApplication::instance() == nullptr) m_app = std::make_unique<QCoreApplication>(m_argc, m_argv);
     auto workcell = planning::loadBuiltInWorkcell();
     ASSERT_TRUE(workcell.ok()) << workcell.error().message;
     m_bench.document.setWorkcell(std::make_shared<const planning::Workcell>(*std::move(workcell)));
@@ -72,10 +72,6 @@ class PlanControllerTest : public ::testing::Test {
     return cell.model->forward(q, *cell.model->linkIndex(cell.arm.tip_link)).translation();
   }
 
-  int m_argc = 1;
-  char m_name[5] = "test";
-  char* m_argv[2] = {m_name, nullptr};
-  std::unique_ptr<QCoreApplication> m_app;
   tests::Bench m_bench;
   JobRunner m_jobs;
   PlanController m_plans{m_bench.document, m_jobs};

@@ -4,6 +4,7 @@
 #include <QObject>
 
 #include "session/controllers/play_controller.h"
+#include "tests/session/event_loop.h"
 #include "tests/session/runtime_fixture.h"
 
 namespace longarm::session {
@@ -15,7 +16,6 @@ using planning::PlayerState;
 class PlayCorrectionTest : public RuntimeFixture {
  protected:
   void SetUp() override {
-    if (QCoreApplication::instance() == nullptr) m_app = std::make_unique<QCoreApplication>(m_argc, m_argv);
     auto loaded = planning::loadBuiltInWorkcell();
     ASSERT_TRUE(loaded.ok()) << loaded.error().message;
     auto cell = std::make_shared<planning::Workcell>(*std::move(loaded));
@@ -62,10 +62,7 @@ class PlayCorrectionTest : public RuntimeFixture {
   }
   PlayerState player() const { return m_runtime->status().player; }
 
-  int m_argc = 1;
-  char m_name[5] = "test";
-  char* m_argv[2] = {m_name, nullptr};
-  std::unique_ptr<QCoreApplication> m_app;
+  longarm::testing::TestApplication m_application;
   Document m_document;
   JobRunner m_jobs;
   PlanController m_plans{m_document, m_jobs};

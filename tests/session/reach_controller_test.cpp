@@ -5,16 +5,16 @@
 #include <gtest/gtest.h>
 
 #include "session/controllers/reach_controller.h"
+#include "tests/session/event_loop.h"
 
 namespace longarm::session {
 namespace {
 
 using Level = planning::ReachAnswer::Level;
 
-class ReachControllerTest : public ::testing::Test {
+class ReachControllerTest : public longarm::testing::EventLoopTest {
  protected:
   void SetUp() override {
-    if (QCoreApplication::instance() == nullptr) m_app = std::make_unique<QCoreApplication>(m_argc, m_argv);
     auto workcell = planning::loadBuiltInWorkcell();
     ASSERT_TRUE(workcell.ok()) << workcell.error().message;
     m_document.setWorkcell(std::make_shared<const planning::Workcell>(*std::move(workcell)));
@@ -45,10 +45,6 @@ class ReachControllerTest : public ::testing::Test {
   }
   Level level(const char* macro) const { return m_reach.answer(QString::fromLatin1(macro)).level; }
 
-  int m_argc = 1;
-  char m_name[5] = "test";
-  char* m_argv[2] = {m_name, nullptr};
-  std::unique_ptr<QCoreApplication> m_app;
   Document m_document;
   JobRunner m_jobs;
   std::shared_ptr<const JointState> m_joints;

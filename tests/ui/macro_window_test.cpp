@@ -37,7 +37,7 @@ void PrintTo(const MacroCase& c, std::ostream* out) { *out << c.macro << " in " 
 
 // Corners of the scenarios' bodies: the middle of an axis lies at 0, z along it.
 const std::vector<Vector3d> kHandle{{0, 0, 0.10}, {0, 0, -0.10}}, kPipe{{0, 0, -0.2}, {0, 0, 0.2}},
-    kRim{{0, 0, 0.05}, {0, 0, -0.05}}, kPackageEdge{{-0.13, 0.18, -0.12}, {-0.13, -0.18, -0.12}},
+    kAxle{{0, 0, -0.1}, {0, 0, 0.1}}, kPackageEdge{{-0.13, 0.18, -0.12}, {-0.13, -0.18, -0.12}},
     kPanel{{-0.01, 0.25, 0.2}, {-0.01, 0.25, -0.2}, {-0.01, -0.25, -0.2}},
     kCrate{{-0.035, 0.06, 0.05}, {0.035, 0.06, 0.05}, {-0.035, -0.06, 0.05}, {-0.035, 0.06, -0.05}},
     kPackage{{-0.13, 0.18, 0.12}, {0.13, 0.18, 0.12}, {-0.13, -0.18, 0.12}, {-0.13, 0.18, -0.12}},
@@ -53,7 +53,7 @@ std::vector<MacroCase> played() {
        "turn_valve",
        ActionId::kToolLine,
        "axle",
-       {{0, 0, -0.1}, {0, 0, 0.1}},
+       kAxle,
        {{"angle", 0.3}}},
       {"grasp_by_faces", "crate", ActionId::kToolTriad, "crate", kCrate},
       {"touch", "scan_panel", ActionId::kToolPoint, "panel", kPanelMiddle, {{"gap", 0.02}}}};
@@ -64,10 +64,10 @@ std::vector<MacroCase> shown() {
           {"move_above", "crate", ActionId::kToolPoint, "crate", kCrateTop},
           {"place_here", "crate", ActionId::kToolPoint, "table", {{0, -0.15, 0.015}}},
           {"move_parallel", "pull_drawer", ActionId::kToolLine, "handle", kHandle},
-          {"aim_along_axis", "grab_pipe", ActionId::kToolLine, "pipe", kPipe},
-          {"insert_along", "grab_pipe", ActionId::kToolLine, "pipe", kPipe},
+          {"aim_along_axis", "turn_valve", ActionId::kToolLine, "axle", kAxle},
+          {"insert_along", "turn_valve", ActionId::kToolLine, "axle", kAxle},
           {"extract_along", "grab_pipe", ActionId::kToolLine, "pipe", kPipe},
-          {"follow_perimeter", "scan_panel", ActionId::kToolPlane, "panel", kPanel},
+          {"follow_perimeter", "scan_panel", ActionId::kToolPlane, "panel", kPanel, {{"inset", 0.08}}},
           {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanel},
           {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate},
           {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage}};
@@ -126,8 +126,8 @@ class MacroWindow : public tests::WindowFixture, public ::testing::WithParamInte
   }
   // As a small JPEG.
   void keep(const QString& name) {
-    const QString folder = qEnvironmentVariable("LONGARM_UI_PICTURES");
-    if (folder.isEmpty()) return;
+    const QString pictures = qEnvironmentVariable("LONGARM_UI_PICTURES");
+    if (pictures.isEmpty()) return;
     window->scene()->view()->requestRender();
     SimulatedHand::pump(600);
     const QImage image =
@@ -138,7 +138,7 @@ class MacroWindow : public tests::WindowFixture, public ::testing::WithParamInte
       buffer.open(QIODevice::WriteOnly);
       image.save(&buffer, "JPG", quality);
       if (bytes.size() > kMostBytes && quality > 20) continue;
-      QFile file(folder + QLatin1Char('/') + name + QStringLiteral(".jpg"));
+      QFile file(pictures + QLatin1Char('/') + name + QStringLiteral(".jpg"));
       ASSERT_TRUE(file.open(QIODevice::WriteOnly)) << file.fileName().toStdString();
       file.write(bytes);
       return;
@@ -177,6 +177,16 @@ class MacroWindow : public tests::WindowFixture, public ::testing::WithParamInte
     }
     FAIL() << "no correction was possible: " << window->strip()->message().toStdString();
   }
+  // As far as the preview of the motion.
+  void show(const MacroCase& c) {
+    openScenario(c);
+    if (HasFatalFailure()) return;
+    sketch(c);
+    if (HasFatalFailure()) return;
+    planIt(c);
+    if (HasFatalFailure()) return;
+    preview(c);
+  }
   void demand(const Status& status) { ASSERT_TRUE(status.ok()) << status.error().message; }
 
   std::unique_ptr<SimulatedOperator> op;
@@ -184,13 +194,8 @@ class MacroWindow : public tests::WindowFixture, public ::testing::WithParamInte
 
 TEST_P(MacroWindow, IsSketchedPlannedPlayedPausedBackedUpCorrectedAndFinished) {
   const MacroCase& c = GetParam();
-  openScenario(c);
+  show(c);
   if (HasFatalFailure()) return;
-  sketch(c);
-  if (HasFatalFailure()) return;
-  planIt(c);
-  if (HasFatalFailure()) return;
-  preview(c);
   demand(op->resetStop());
   demand(op->openGripper());
   if (bench->play().state().ask) bench->play().acceptAccuracy();
@@ -216,16 +221,7 @@ TEST_P(MacroWindow, IsSketchedPlannedPlayedPausedBackedUpCorrectedAndFinished) {
 
 class MacroPicturesCampaign : public MacroWindow {};
 
-TEST_P(MacroPicturesCampaign, IsSketchedPlannedAndShown) {
-  const MacroCase& c = GetParam();
-  openScenario(c);
-  if (HasFatalFailure()) return;
-  sketch(c);
-  if (HasFatalFailure()) return;
-  planIt(c);
-  if (HasFatalFailure()) return;
-  preview(c);
-}
+TEST_P(MacroPicturesCampaign, IsSketchedPlannedAndShown) { show(GetParam()); }
 
 std::string nameOf(const ::testing::TestParamInfo<MacroCase>& info) { return info.param.macro; }
 

@@ -291,7 +291,9 @@ TEST_P(ThirdOnCanvas, ShowsBothCurvesAndFlagsAClickThatIsOff) {
   SimulatedHand hand;
   hand.click(pane.canvas(), *pane.canvas()->widgetOfPixel(truth));
   ASSERT_NE(rig.bench.document().item(rig.line)->pick({3}, 0), nullptr);
-  if (GetParam() >= 1) EXPECT_FALSE(warned());
+  if (GetParam() >= 1) {
+    EXPECT_FALSE(warned());
+  }
   hand.click(pane.canvas(), *pane.canvas()->widgetOfPixel(truth + Eigen::Vector2d(0, 18)));
   EXPECT_TRUE(warned());
   rig.bench.targeting().undo();
