@@ -101,7 +101,7 @@ struct Player::Impl {
   }
   int brakingPieces() const {
     const double left = options.horizon_s - options.commit_s - options.point_spacing_s;
-    return std::max(3, static_cast<int>(left / options.point_spacing_s + 1e-9));
+    return std::max(3, static_cast<int>(left / options.braking_spacing_s + 1e-9));
   }
 
   void standAt(double tau) {
@@ -115,7 +115,7 @@ struct Player::Impl {
   RateProfile candidate(const RateProfile::Knot& from, double level) const {
     RateProfile next(stretch, from.t, from.state);
     next.append(options.point_spacing_s, level);
-    next.appendBraking(options.point_spacing_s, brakingPieces());
+    next.appendBraking(options.braking_spacing_s, brakingPieces());
     return next;
   }
 
@@ -203,8 +203,8 @@ struct Player::Impl {
 
   // In place of the rest of the horizon in force the shortest braking that keeps the limits.
   void brakeSooner() {
-    constexpr int kLeastPieces = 3;
-    const double h = options.point_spacing_s, from = now + options.commit_s;
+    constexpr int kLeastPieces = 6;
+    const double h = options.braking_spacing_s, from = now + options.commit_s;
     for (int pieces = kLeastPieces; from + pieces * h < profile.endTime() - 1e-6; ++pieces) {
       RateProfile committed = profile.upTo(from);
       const RateProfile::Knot start = committed.knots().back();

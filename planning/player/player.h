@@ -12,8 +12,10 @@
 namespace longarm::planning {
 
 struct PlayerOptions {
-  double horizon_s = 0.3;                ///< Length of each horizon; every one ends at rest on the path.
+  /// Longest horizon; every one ends at rest on the path, so this is also the longest that a pause takes.
+  double horizon_s = 0.19;
   double point_spacing_s = 0.02;
+  double braking_spacing_s = 0.01;       ///< Of the points while braking: the harder it is, the finer.
   /// How long a horizon keeps to the one before it: one that arrives up to this much late still meets the arm.
   double commit_s = 0.04;
   double max_rate_change = 10;           ///< Of d tau / dt, besides the joint limits [1/s].
@@ -38,10 +40,11 @@ class Player {
   ///   nothing is loaded, after a halt, at speed 0, or when tau lies behind, or nearer than the arm can come
   ///   to rest.
   Status playUntil(double tau);
-  /// Decelerates along the path within the planned limits, as soon as they allow: from the planned speed at
-  /// rest within 180 ms of the next tick, from twice that within horizon_s.
+  /// Decelerates along the path within the limits, as soon as they allow: at rest within horizon_s of the last tick, at
+  /// any instant and any speed.
   void pause();
-  /// Wanted speed factor, -2 ... 2 (clamped); takes effect in motion.
+  /// Wanted speed factor, -2 ... 2 (clamped); takes effect in motion.  Where a stop from there would take longer than a horizon
+  /// has, the rate stays as far below it as that needs; the planned speed (1) always fits.
   void setSpeed(double factor);
   /// Moves the cursor while not moving (preview only; never moves the robot).  @returns kRefused while playing.
   Status scrub(double tau);

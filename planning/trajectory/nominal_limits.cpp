@@ -13,9 +13,9 @@ constexpr double kAccelerationShare = 0.125;   // of the limit, at rate 1
 
 NominalLimits nominalLimits(const MotionLimits& limits, const PlaybackReserve& reserve) {
   const double root = std::sqrt(kAccelerationShare);
-  LONGARM_REQUIRE(reserve.max_rate * root < 1, "playback rate leaves no acceleration for braking");
-  // Integral of dr / (1 - share r^2) from 0 to max_rate.
-  const double braking = std::atanh(reserve.max_rate * root) / root;
+  LONGARM_REQUIRE(reserve.stop_rate * root < 1, "playback rate leaves no acceleration for braking");
+  // Integral of dr / (1 - share r^2) from 0 to stop_rate.
+  const double braking = std::atanh(reserve.stop_rate * root) / root;
   const double beta = reserve.stop_s / braking;
   return {(limits.max_velocity / reserve.max_rate).cwiseMin(beta * limits.max_acceleration),
           kAccelerationShare * limits.max_acceleration};

@@ -170,7 +170,7 @@ Status PlayController::load() {
 std::optional<double> PlayController::nextBorder(double direction) const {
   if (plan() == nullptr) return std::nullopt;
   const bool loaded = m_loaded.valid() && m_document.plan()->id == m_loaded;
-  constexpr double kHorizon_s = 0.32;
+  constexpr double kHorizon_s = 0.22;  // and a tick
   const double needs = std::max(kAtEnd_s, kHorizon_s * std::abs(m_status.rate));
   const double here = loaded ? m_status.arm_cursor : 0;
   std::optional<double> next;

@@ -175,7 +175,7 @@ void expectKept(const Worst& worst) {
   EXPECT_LT(worst.position_jump, 1e-5);          // Two polynomials through different points of one motion.
   EXPECT_LT(worst.velocity_jump, 2e-3);
   EXPECT_LT(worst.off_path, 1e-4);
-  EXPECT_LE(worst.duration, 0.3 + 1e-9);
+  EXPECT_LE(worst.duration, 0.19 + 1e-9);
   if (std::getenv("LONGARM_PRINT_FIGURES")) {
     std::printf("velocity %.6f acceleration %.6f seen %.6f %.6f jump %.2e %.2e off path %.2e\n",
                 worst.velocity, worst.acceleration, worst.seen_velocity, worst.seen_acceleration,

@@ -164,7 +164,7 @@ TEST(SplinePath, PassesThroughItsWaypointsSmoothly) {
 }
 
 // The promise of nominal_limits.h, by integrating the braking law at every instant of random trajectories.
-TEST(NominalLimits, LeaveRoomToStopFromDoubleSpeedInsideTheHorizon) {
+TEST(NominalLimits, LeaveRoomToStopInsideTheHorizon) {
   MotionLimits limits;
   limits.max_velocity = Eigen::VectorXd::Constant(6, 1.5);
   limits.max_acceleration = Eigen::VectorXd::Constant(6, 4.0);
@@ -178,7 +178,7 @@ TEST(NominalLimits, LeaveRoomToStopFromDoubleSpeedInsideTheHorizon) {
     ASSERT_TRUE(trajectory.ok());
     for (double start = 0; start < trajectory->duration(); start += 0.05) {
       for (const double sign : {1.0, -1.0}) {
-        double tau = start, rate = 2 * sign, t = 0;
+        double tau = start, rate = reserve.stop_rate * sign, t = 0;
         const double beta = (nominal.max_velocity.array() / limits.max_acceleration.array()).maxCoeff();
         const double h = 1e-3;
         while (std::abs(rate) > 1e-9 && t < 1) {
