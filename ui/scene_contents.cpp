@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "session/document/standing_items.h"
+
 namespace longarm::ui {
 
 namespace {
@@ -89,7 +91,7 @@ void SceneContents::setSketch(const session::Document& document) {
 
 void SceneContents::setWorld(const session::Document& document, const std::optional<session::HeldBody>& held) {
   m_bodies.clear();
-  for (const auto& item : document.world()) {
+  for (const auto& item : session::standingItems(document)) {
     if (item.hidden || (held && held->item == item.id)) continue;
     for (auto& body : session::bodiesOf(item, false)) m_bodies.push_back(std::move(body));
   }

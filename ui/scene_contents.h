@@ -35,11 +35,14 @@ class SceneContents final {
 
   /// Builds robot, plan and fixed objects; null takes them away.
   void setWorkcell(std::shared_ptr<const planning::Workcell> workcell);
+  /// Null: none.
+  std::shared_ptr<const planning::RobotModel> robot() const { return m_workcell ? m_workcell->model : nullptr; }
   /// Measured joints; null: unknown, the robot is then drawn as a ghost.
   /// @returns whether the robot looks any different.
   bool setJoints(const JointState* joints);
   void setSketch(const session::Document& document);
-  /// Bodies that were added to the world, and only those that are shown; what is held is drawn at the tool.
+  /// Bodies that were added to the world, and only those that are shown; what is held is drawn at the tool, what
+  /// is stale where odometry has it.
   void setWorld(const session::Document& document, const std::optional<session::HeldBody>& held);
   /// What the measure tool measured; empty: nothing.  @returns whether it differs from what was shown.
   bool setDimension(const std::optional<session::SceneDimension>& dimension);

@@ -100,6 +100,7 @@ void ScenePanel::bind(Actions& actions) {
   connect(&m_bench.targeting(), &session::TargetingController::featuresChanged, this, &ScenePanel::onSketch);
   connect(&m_bench.targeting(), &session::TargetingController::worldChanged, this, &ScenePanel::onWorld);
   connect(&m_bench.held(), &session::HeldController::changed, this, &ScenePanel::onWorld);
+  connect(&m_bench, &Workbench::baseRested, this, &ScenePanel::onWorld);
   connect(&m_bench.targeting(), &session::TargetingController::planChanged, this, &ScenePanel::onPlan);
   connect(&m_bench.play(), &session::PlayController::changed, this, [this] {
     m_contents->setCursor(m_bench.play().state().cursor_s);
@@ -115,8 +116,11 @@ void ScenePanel::bind(Actions& actions) {
 }
 
 void ScenePanel::onWorkcell() {
-  m_contents->setWorkcell(m_bench.document().workcell());
-  showAll(CameraPreset::kIso);
+  const auto& workcell = m_bench.document().workcell();
+  const bool same_robot = workcell && m_contents->robot() == workcell->model;
+  m_contents->setWorkcell(workcell);
+  onJoints();
+  if (!same_robot) showAll(CameraPreset::kIso);
 }
 
 void ScenePanel::onJoints() {

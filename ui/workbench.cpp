@@ -7,6 +7,7 @@
 #include <QDir>
 #include <QStandardPaths>
 
+#include "planning/world/room.h"
 #include "planning/world/workcell.h"
 #include "session/document/feature_rows.h"
 #include "session/commands/reregistration.h"
@@ -73,7 +74,7 @@ void Workbench::connectParts() {
   connect(&m_world, &session::WorldController::changed, this, &Workbench::tellObstacles);
   connect(&m_robot, &RobotSession::linkChanged, this, &Workbench::tellObstacles);   // a robot started anew knows none
   connect(&m_robot, &RobotSession::polled, this, [this] {
-    if (m_robot.status().base) m_document.setBase(m_robot.status().base);
+    if (m_robot.status().base) followBase(*m_robot.status().base);
     m_play.refresh(m_robot.status());
     lookAtGripper();
     if (m_recorder.recording() && m_robot.runtime() != nullptr) {
@@ -119,7 +120,10 @@ void Workbench::connectTemplates() {
   connect(&m_templates, &session::TemplateController::failed, this, &Workbench::said);
   connect(&m_robot, &RobotSession::polledSlowly, this, [this] {
     const auto& status = m_robot.status();
-    m_templates.refresh(status.moving, status.gate.stopped, status.player == planning::PlayerState::kDone);
+    // A correction plays a motion of its own to its end; the whole has more to come then.
+    const auto& play = m_play.state();
+    const bool whole = !play.correcting && play.cursor_s >= play.duration_s - 1e-6;
+    m_templates.refresh(status.moving, status.gate.stopped, whole && status.player == planning::PlayerState::kDone);
   });
 }
 
@@ -249,12 +253,23 @@ void Workbench::setWorkcell(std::shared_ptr<const planning::Workcell> workcell) 
 
 void Workbench::useCalibrations() {
   const auto workcell = m_calibration.workcellInUse();
-  m_document.setWorkcell(workcell);
+  m_document.setWorkcell(planning::withBaseAt(workcell, poseOf(m_stands_at)));
   m_live.setWorkcell(workcell);
   m_aim.setWorkcell(workcell);
   m_zoom_drive.setWorkcell(workcell);
   m_watch.setWorkcell(workcell);
   for (const auto& warning : m_templates.reload()) say(QString::fromStdString(warning));
+}
+
+// What stands in the room stays there while the base is driven: wherever that comes to rest, the bodies are told anew.
+void Workbench::followBase(const BaseState& base) {
+  m_document.setBase(base);
+  if (!base.twist.standing() || samePlace(base, m_stands_at)) return;
+  m_stands_at = base;
+  const auto workcell = m_calibration.workcellInUse();
+  if (workcell && planning::hasRoom(*workcell)) m_document.setWorkcell(planning::withBaseAt(workcell, poseOf(base)));
+  tellObstacles();
+  Q_EMIT baseRested();
 }
 
 QString Workbench::whyNotCalibrate() const {

@@ -129,6 +129,7 @@ class Workbench final : public QObject {
   void said(const QString& sentence);
   void paneCameraChanged(longarm::vision::PaneSide side);
   void autoPlayChanged();
+  void baseRested();                       ///< Elsewhere than before: what stands in the room is elsewhere to the robot.
 
  private:
   void connectParts();
@@ -138,6 +139,7 @@ class Workbench final : public QObject {
   void favourCameras();
   void connectCalibration();
   void useCalibrations();
+  void followBase(const BaseState& base);
   QString whyNotTrust(const QString& macro) const;
   void lookAtReach();
   void connectCameras();
@@ -168,6 +170,7 @@ class Workbench final : public QObject {
   session::DriveController m_drive;
   session::MotionRecorder m_recorder;
   QString m_motion_folder;
+  BaseState m_stands_at;                   // What the document's workcell and the obstacles told are for.
   session::Autosave m_autosave;
   session::CalibrationController m_calibration;
   session::PoseController m_pose;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "planning/macros/grip.h"
+#include "session/document/standing_items.h"
 
 namespace longarm::session {
 
@@ -103,7 +104,8 @@ std::optional<HeldBody> HeldController::fromFingers(const Eigen::VectorXd& q) co
   const auto& workcell = *m_document.workcell();
   std::vector<planning::WorldObject> bodies = workcell.objects;
   std::vector<const WorldItem*> items(bodies.size(), nullptr);
-  for (const auto& item : m_document.world()) {
+  const std::vector<WorldItem> standing = standingItems(m_document);
+  for (const auto& item : standing) {
     if (item.parent != rootFrame(workcell)) continue;
     for (auto& body : bodiesOf(item, false)) {
       bodies.push_back(std::move(body));
@@ -147,7 +149,7 @@ void HeldController::putDown(const Eigen::VectorXd& q) {
 std::vector<planning::WorldObject> HeldController::obstacles(FeatureId skip) const {
   const auto& workcell = m_document.workcell();
   if (!workcell || !workcell->model) return {};
-  std::vector<WorldItem> items = m_document.world();
+  std::vector<WorldItem> items = standingItems(m_document);
   if (m_held && m_held->item.valid()) {
     items.erase(std::remove_if(items.begin(), items.end(), [this](const WorldItem& item) { return item.id == m_held->item; }), items.end());
   }

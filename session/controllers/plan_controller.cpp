@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "planning/macros/accuracy.h"
 #include "planning/macros/macro_arguments.h"
+#include "session/document/standing_items.h"
 
 namespace longarm::session {
 
@@ -189,7 +190,7 @@ std::optional<planning::PlanContext> PlanController::contextWithout(FeatureId ta
   context.start = workcell->model->neutral();
   workcell->model->assign(*joints, context.start);
   if (m_held == nullptr) {
-    context.objects = obstaclesOf(m_document.world(), rootFrame(*workcell), target);
+    context.objects = obstaclesOf(standingItems(m_document), rootFrame(*workcell), target);
   } else {
     context.objects = m_held->obstacles(target);
   }
@@ -227,7 +228,7 @@ Status PlanController::planGiven(const QString& name, GivenFeature given) {
   cancel();
   context->arguments = given.arguments;
   if (given.carried.valid()) {
-    context->objects = obstaclesOf(m_document.world(), root, {}, given.carried);
+    context->objects = obstaclesOf(standingItems(m_document), root, {}, given.carried);
     context->held.clear();
   }
   Request request{++m_generation, info.name, {}, given.feature, {}, m_document.world(), std::move(given), {}, {}};
@@ -356,16 +357,18 @@ Status PlanController::checkFeature() const {
 
 Status PlanController::checkPlace() const {
   if (!m_planned) return {};
+  const auto& now = m_document.base();
+  if (now && m_planned->base && !samePlace(*now, *m_planned->base)) {
+    const BaseShift shift = shiftBetween(*now, *m_planned->base);
+    return {ErrorCode::kStale, "The base has moved by " + formatFixed(shift.way * 1000, 0) + " mm and " +
+                                   formatFixed(shift.turn * 180 / M_PI, 1) +
+                                   " deg since the plan was made (10 mm and 0.5 deg are allowed). Plan again."};
+  }
   if (m_planned->workcell != m_document.workcell()) {
     return {ErrorCode::kStale,
             "The calibration or the workcell was changed since the plan was made. Plan again."};
   }
-  const auto& now = m_document.base();
-  if (!now || !m_planned->base || samePlace(*now, *m_planned->base)) return {};
-  const BaseShift shift = shiftBetween(*now, *m_planned->base);
-  return {ErrorCode::kStale, "The base has moved by " + formatFixed(shift.way * 1000, 0) + " mm and " +
-                                 formatFixed(shift.turn * 180 / M_PI, 1) +
-                                 " deg since the plan was made (10 mm and 0.5 deg are allowed). Plan again."};
+  return {};
 }
 
 Status PlanController::checkSurroundings() const {

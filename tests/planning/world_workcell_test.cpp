@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "planning/world/room.h"
 #include "planning/world/workcell.h"
 #include "tests/support/test_data.h"
 
@@ -95,6 +96,34 @@ TEST_F(WorkcellTest, ReadsEverySection) {
   EXPECT_TRUE(mentions("extra is unknown"));
   EXPECT_TRUE(mentions("a.yaml does not exist"));
   EXPECT_TRUE(mentions("\"b\" has no calibration"));
+}
+
+// A robot that drove 1 m ahead and turned to its left by a quarter: what stood ahead stands to its right.
+TEST(Room, StaysWhereItIsWhileWhatALinkCarriesGoesWithTheBase) {
+  Workcell cell;
+  WorldObject shelf, zone, box;
+  shelf.name = "shelf";
+  shelf.X_WO.translation() = Eigen::Vector3d(3, 0, 0.5);
+  zone.name = "zone";
+  zone.role = BodyRole::kKeepOut;
+  zone.X_WO.translation() = Eigen::Vector3d(1, 2, 0);
+  box.name = "battery";
+  box.attached_link = "base_link";
+  box.X_WO.translation() = Eigen::Vector3d(-0.2, 0, 0.3);
+  cell.objects = {box};
+  const auto carried = std::make_shared<const Workcell>(cell);
+  const Pose X_OB = poseFromRpy({1, 0, 0}, {0, 0, M_PI / 2});
+  EXPECT_FALSE(hasRoom(*carried));
+  EXPECT_EQ(withBaseAt(carried, X_OB), carried);
+  cell.objects = {shelf, zone, box};
+  const auto file = std::make_shared<const Workcell>(cell);
+  EXPECT_TRUE(hasRoom(*file));
+  EXPECT_EQ(withBaseAt(file, Pose::Identity()), file);
+  const auto now = withBaseAt(file, X_OB);
+  EXPECT_LT((now->objects[0].X_WO.translation() - Eigen::Vector3d(0, -2, 0.5)).norm(), 1e-12);
+  EXPECT_LT((now->objects[1].X_WO.translation() - Eigen::Vector3d(2, 0, 0)).norm(), 1e-12);
+  EXPECT_TRUE(now->objects[2].X_WO.isApprox(box.X_WO));
+  EXPECT_TRUE(file->objects[0].X_WO.isApprox(shelf.X_WO)) << "the file's stay";
 }
 
 TEST_F(WorkcellTest, RefusesNamingFileLineKeyValueAndWhatWasExpected) {

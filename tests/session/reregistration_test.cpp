@@ -6,6 +6,7 @@
 #include "session/commands/world_commands.h"
 #include "session/document/feature_rows.h"
 #include "session/document/overlay_builder.h"
+#include "session/document/standing_items.h"
 #include "session/commands/reregistration.h"
 #include "tests/session/synthetic_views.h"
 
@@ -74,6 +75,34 @@ class Driven : public ::testing::Test {
   EditHistory m_history{m_document};
   const Vector3d m_a{1.5, 0.2, 1.05}, m_b{1.6, -0.15, 0.92}, m_c{1.7, 0.1, 0.85}, m_d{1.45, -0.05, 1.1};
 };
+
+// An obstacle of before does not go with the base: planning keeps clear of where odometry has it, by more the further it went.
+TEST_F(Driven, AStaleBodyStandsWhereOdometryHasIt) {
+  WorldItem body;
+  body.id = m_document.nextWorldId();
+  body.name = "crate";
+  body.X_WO.translation() = Vector3d(1.2, 0.1, 0.4);
+  body.margin_m = 0.01;
+  body.base = BaseState{};
+  WorldItem cloud = body;
+  cloud.id = {body.id.value + 1};
+  cloud.kind = WorldKind::kPoints;
+  cloud.points = {{1.2, 0.1, 0.4}};
+  WorldItem unknown = body;
+  unknown.id = {body.id.value + 2};
+  unknown.base.reset();
+  for (const auto& item : {body, cloud, unknown}) m_history.push(addWorldItem(item));
+  EXPECT_EQ(standingItems(m_document), m_document.world()) << "nothing is stale";
+  m_document.setBase(gone());
+  const auto standing = standingItems(m_document);
+  ASSERT_EQ(standing.size(), 3u);
+  const Vector3d expected = poseFromRpy({0.30, -0.05, 0}, {0, 0, 0.07}).inverse() * Vector3d(1.2, 0.1, 0.4);
+  EXPECT_LT((standing[0].X_WO.translation() - expected).norm(), 1e-12);
+  EXPECT_LT((standing[1].points.front() - expected).norm(), 1e-12);
+  EXPECT_NEAR(standing[0].margin_m, 0.01 + 0.02 * (std::hypot(0.30, 0.05) + 0.07 * expected.norm()), 1e-9);
+  EXPECT_EQ(standing[2], unknown) << "nobody knows from where it was measured";
+  EXPECT_TRUE(m_document.world().front().X_WO.isApprox(body.X_WO)) << "the document's own stays, for marks made again";
+}
 
 TEST_F(Driven, WhatWasMeasuredBeforeIsMarkedEverywhere) {
   const FeatureId line = add("Line 1", {m_a, m_b});

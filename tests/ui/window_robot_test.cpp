@@ -199,6 +199,13 @@ TEST_F(WindowWithRobot, JogsTheArmWhileAButtonIsHeld) {
 
 TEST_F(WindowWithRobot, DrivesTheBaseWhileAButtonIsHeldAndMarksWhatWasMeasuredBefore) {
   openWithRobot({1920, 1080});
+  auto furnished = std::make_shared<planning::Workcell>(*bench->document().workcell());
+  planning::WorldObject shelf;
+  shelf.name = "shelf";
+  shelf.X_WO.translation() = Eigen::Vector3d(3, 0.5, 0.5);
+  furnished->objects.push_back(shelf);
+  bench->setWorkcell(furnished);
+  const auto shelfAt = [this] { return bench->document().workcell()->objects.front().X_WO.translation().x(); };
   ASSERT_TRUE(hand.hold(
       window->stopPanel()->resetButton(), [this] { return !bench->robot().status().gate.stopped; }, 10));
   window->findChild<QDockWidget*>(QStringLiteral("drive"))->raise();
@@ -218,6 +225,7 @@ TEST_F(WindowWithRobot, DrivesTheBaseWhileAButtonIsHeldAndMarksWhatWasMeasuredBe
   EXPECT_EQ(bench->robot().status().gate.refused, 0u) << bench->robot().status().gate.reason;
   ASSERT_TRUE(bench->document().base().has_value());
   EXPECT_NEAR(bench->document().base()->x, there, 0.002);
+  EXPECT_TRUE(SimulatedHand::waitFor([&] { return std::abs(shelfAt() - (3 - there)) < 0.003; }, 5)) << "it stands in the room";
   bench->plan(QStringLiteral("stow"));
   ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->play().state().can_play; }, 60))
       << bench->play().state().why_not_play.toStdString();
