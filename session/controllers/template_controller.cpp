@@ -31,6 +31,12 @@ Eigen::Vector3d nearestOn(const vision::Feature& feature, const Eigen::Vector3d&
   return out;
 }
 
+// A correction puts the motion with its way off the path and back in place of the plan.
+bool isCorrectionOf(const TemplateStep& step, const PlanRecord& record) {
+  return record.macro == step.macro && std::any_of(record.plan.stages.begin(), record.plan.stages.end(),
+                                                   [](const auto& stage) { return stage.name == "correction"; });
+}
+
 QString placeOf(std::size_t step, const TemplateAction& action) {
   return TemplateController::tr("%1 of %2").arg(step + 1).arg(action.steps.size());
 }
@@ -253,6 +259,8 @@ void TemplateController::watchMotion(bool moving, bool played_to_the_end) {
     return;
   }
   const auto& plan = m_document.plan();
+  const auto action = actionOf(*m_run);
+  if (plan && plan->id != m_run->plan && isCorrectionOf(action->steps[m_run->step], *plan)) m_run->plan = plan->id;
   if (!plan || plan->id != m_run->plan) return end(tr("Its plan was put away: the action ends."));
   if (moving) m_run->phase = Phase::kPlaying;
   if (m_run->phase == Phase::kPlaying && !moving && played_to_the_end) finishStep();

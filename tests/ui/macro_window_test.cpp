@@ -16,7 +16,7 @@ struct MacroCase {
   const char* object;            // whose frame the points are in
   std::vector<Vector3d> points;  // [m]
   std::map<std::string, double> settings = {};
-  bool touches = false;  // the object is to be touched
+  bool touches = false;  // the object may be touched
 };
 
 void PrintTo(const MacroCase& c, std::ostream* out) { *out << c.macro << " in " << c.scenario; }
@@ -25,9 +25,10 @@ void PrintTo(const MacroCase& c, std::ostream* out) { *out << c.macro << " in " 
 const std::vector<Vector3d> kHandle{{0, 0, 0.10}, {0, 0, -0.10}}, kPipe{{0, 0, -0.2}, {0, 0, 0.2}},
     kAxle{{0, 0, -0.1}, {0, 0, 0.1}}, kPackageEdge{{-0.13, 0.18, -0.12}, {-0.13, -0.18, -0.12}},
     kPanel{{-0.01, 0.25, 0.2}, {-0.01, 0.25, -0.2}, {-0.01, -0.25, -0.2}},
+    kPanelTop{{-0.01, 0.12, 0.2}, {-0.01, 0.12, 0}, {-0.01, -0.12, 0}},
     kCrate{{-0.035, 0.06, 0.05}, {0.035, 0.06, 0.05}, {-0.035, -0.06, 0.05}, {-0.035, 0.06, -0.05}},
     kPackage{{-0.13, 0.18, 0.12}, {0.13, 0.18, 0.12}, {-0.13, -0.18, 0.12}, {-0.13, 0.18, -0.12}},
-    kCrateTop{{0, 0, 0.05}}, kPanelMiddle{{-0.01, 0, 0}};
+    kCrateEdge{{-0.035, 0.06, 0.05}, {-0.035, 0.06, -0.05}}, kCrateTop{{0, 0, 0.05}}, kPanelMiddle{{-0.01, 0, 0}};
 
 std::vector<MacroCase> everyMacro() {
   return {
@@ -43,10 +44,10 @@ std::vector<MacroCase> everyMacro() {
       {"place_here", "crate", ActionId::kToolPoint, "table", {{0, -0.15, 0.015}}},
       {"move_parallel", "pull_drawer", ActionId::kToolLine, "handle", kHandle},
       {"aim_along_axis", "turn_valve", ActionId::kToolLine, "axle", kAxle},
-      {"insert_along", "turn_valve", ActionId::kToolLine, "axle", kAxle},
+      {"insert_along", "crate", ActionId::kToolLine, "crate", kCrateEdge, {{"depth", 0.005}}, true},
       {"extract_along", "grab_pipe", ActionId::kToolLine, "pipe", kPipe},
       {"follow_perimeter", "scan_panel", ActionId::kToolPlane, "panel", kPanel, {{"inset", 0.08}}},
-      {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanel, {}, true},
+      {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {}, true},
       {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate},
       {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}}};
 }
@@ -67,7 +68,6 @@ class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInter
     if (!HasFatalFailure()) finish();
     if (HasFatalFailure()) return;
     EXPECT_TRUE(contacts(c.touches ? c.object : "").empty()) << judge().dump();
-    EXPECT_EQ(contacts().empty(), !c.touches) << judge().dump();
   }
 };
 

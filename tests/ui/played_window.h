@@ -91,8 +91,9 @@ class PlayedWindow : public WindowFixture {
     }
   }
 
-  planning::PlayerState player() const { return bench->robot().status().player; }
-  double cursor() const { return bench->robot().status().arm_cursor; }
+  // Asked anew: what was polled last may be of before a correction.
+  planning::PlayerState player() const { return bench->robot().runtime()->status().player; }
+  double cursor() const { return bench->robot().runtime()->status().arm_cursor; }
   // Presses until the motion has got somewhere; a busy machine's watchdogs may stop it on its way.
   bool playUntil(const std::function<bool()>& there) {
     return ui::SimulatedHand::waitFor([&] { return there() || (op->keepPlaying() && there()); }, 180);
@@ -127,6 +128,7 @@ class PlayedWindow : public WindowFixture {
   // Plays the plan on the table a part of its way, pauses, backs up a little, and corrects.
   void playAndCorrect() {
     if (bench->play().state().ask) bench->play().acceptAccuracy();
+    ASSERT_NE(bench->document().plan()->plan.go, "no_go") << whyNot();
     const double duration = bench->play().state().duration_s;
     ASSERT_TRUE(playUntil([&] { return cursor() > 0.3 * duration; })) << whyNot();
     pause();
