@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "session/document/feature_rows.h"
+#include "session/document/path_sight.h"
 #include "vision/sketch/overlay.h"
 
 namespace longarm::session {
@@ -137,10 +138,22 @@ void addFailure(Overlay& overlay, const vision::View& view, const planning::Plan
   addText(overlay, OverlayRole::kWarning, *pixel + Eigen::Vector2d(1.5 * kCross, 0), planning::toString(plan.status) + stage);
 }
 
+// In pieces that are seen and pieces that a known body hides.
+void addPathPieces(Overlay& overlay, const std::vector<Eigen::Vector3d>& path, const std::vector<bool>& hidden, const vision::View& view) {
+  std::vector<Eigen::Vector3d> piece{path.front()};
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    piece.push_back(path[i]);
+    if (i + 1 < path.size() && hidden[i + 1] == hidden[i]) continue;
+    vision::addPath(piece, view, hidden[i] ? OverlayRole::kPathOccluded : OverlayRole::kPath, &overlay);
+    piece = {path[i]};
+  }
+}
+
 void addPlan(Overlay& overlay, const Document& document, const vision::View& view, const OverlayOptions& options) {
   if (options.path && document.plan()) addFailure(overlay, view, document.plan()->plan);
   if (!options.path || options.path_points == nullptr || options.path_points->size() < 2) return;
-  vision::addPath(*options.path_points, view, OverlayRole::kPath, &overlay);
+  const auto& path = *options.path_points;
+  addPathPieces(overlay, path, hiddenBehind(bodiesInSight(document, view.parent), view.X_WC.translation(), path), view);
 }
 
 }  // namespace

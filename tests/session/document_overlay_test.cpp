@@ -1,6 +1,7 @@
 // What is drawn over a picture.
 #include <gtest/gtest.h>
 
+#include "session/commands/world_commands.h"
 #include "session/document/overlay_builder.h"
 #include "tests/session/synthetic_views.h"
 
@@ -132,6 +133,36 @@ TEST(OverlayBuilder, DrawsThePathOnlyWhereItIsSeen) {
   }
   options.path = false;
   EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPath).empty());
+}
+
+// A box before the middle of the path: what lies behind it is drawn as hidden, in snapshots and live, and it leaves no gap.
+TEST(OverlayBuilder, DrawsWhatABodyHidesOfThePathAsHidden) {
+  Bench bench;
+  std::vector<Eigen::Vector3d> path;
+  for (int i = 0; i <= 40; ++i) path.push_back({1.6, 0.2 - 0.01 * i, 1});
+  OverlayOptions options;
+  options.path_points = &path;
+  EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPathOccluded).empty());
+  WorldItem box;
+  box.id = bench.document.nextWorldId();
+  box.name = "crate";
+  box.parent = bench.scene.left.parent;
+  const Eigen::Vector3d eye = bench.scene.left.X_WC.translation();
+  box.X_WO.translation() = eye + 0.7 * (path[20] - eye);
+  box.size = {0.06, 0.06, 0.3};
+  bench.history.push(addWorldItem(box));
+  for (const auto& overlay : {buildOverlay(bench.document, SnapshotId{1}, options), buildOverlay(bench.document, bench.scene.left, options)}) {
+    const auto seen = shapesOf(overlay, OverlayRole::kPath), hidden = shapesOf(overlay, OverlayRole::kPathOccluded);
+    ASSERT_EQ(seen.size(), 2u);
+    ASSERT_EQ(hidden.size(), 1u);
+    EXPECT_EQ(seen[0].points.back(), hidden[0].points.front());
+    EXPECT_EQ(hidden[0].points.back(), seen[1].points.front());
+    const Eigen::Vector2d middle = *bench.scene.left.project(path[20]);
+    EXPECT_LT((0.5 * (hidden[0].points.front() + hidden[0].points.back()) - middle).norm(), 15);
+  }
+  box.X_WO.translation() = eye + 1.3 * (path[20] - eye);
+  bench.history.push(replaceWorldItem(bench.document, box));
+  EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPathOccluded).empty()) << "it stands behind";
 }
 
 TEST(OverlayBuilder, MarksWhereAPlanFailedWithItsCodeAndStage) {
