@@ -178,7 +178,7 @@ TEST(Triad, SizesAreAsGoodAsTheTableSays) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(s.rms_mm[i], table[i], 0.1 * table[i]) << "edge " << i + 1;
     EXPECT_NEAR(s.predicted_mm[i], s.rms_mm[i], 0.1 * s.rms_mm[i]) << "edge " << i + 1;
-    EXPECT_LE(s.rms_mm[i], 2.1) << "edge " << i + 1;
+    EXPECT_LE(s.rms_mm[i], 2.0) << "edge " << i + 1;
   }
   EXPECT_NEAR(s.direction_deg, 0.45, 0.06);
 }

@@ -1,17 +1,13 @@
 #pragma once
 
 /// @file
-/// The arithmetic behind pair_kernel, inlined into the loops over one pair and over many.  Internal to the kernel.
-///
-/// Without a branch, so that a compiler can work at several pairs at once: what is refused is computed all the same.
+/// The arithmetic behind pair_kernel for one pair.  Internal to the kernel.
 
 #include <cmath>
 
-#include "vision/stereo/pair_kernel.h"
+#include "vision/stereo/pair_lens.h"
 
 namespace longarm::vision::internal::pair_core {
-
-#define LONGARM_INLINE inline __attribute__((always_inline))
 
 struct Vec {
   double x, y, z;
@@ -25,10 +21,7 @@ LONGARM_INLINE Vec cross(const Vec& a, const Vec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Ideal coordinates of a pixel, and the lens' derivative there.
-struct Ideal {
-  double x, y, d_xx, d_xy, d_yy;
-};
+using Ideal = pair_lens::Ideal<double>;
 
 // Sum of J^T W J and J^T W r over the views.
 struct Normal {
@@ -57,42 +50,6 @@ LONGARM_INLINE bool addView(const CameraPair& c, int k, const Vec& q, const Idea
   n->zz += j1.z * a.z + j2.z * b.z;
   n->g = n->g + (at.x - at_x) * a + (at.y - at_y) * b;
   return z > 1e-9;
-}
-
-// Ideal coordinates before the lens, and a first guess of those behind it by the radial series.
-struct Guess {
-  double tx, ty;
-};
-LONGARM_INLINE Guess guess(const CameraPair& c, int k, double u, double v, Ideal* at) {
-  Guess g{};
-  g.ty = (v - c.cy[k]) * c.inverse_fy[k];
-  g.tx = (u - c.cx[k] - c.skew[k] * g.ty) * c.inverse_fx[k];
-  const double r2 = g.tx * g.tx + g.ty * g.ty;
-  const double scale = 1 + r2 * (c.s1[k] + r2 * (c.s2[k] + r2 * c.s3[k]));
-  at->x = g.tx * scale;
-  at->y = g.ty * scale;
-  return g;
-}
-
-// One round of Newton; @returns the squared error before it.
-LONGARM_INLINE double refine(const CameraPair& c, int k, const Guess& g, Ideal* at) {
-  const double xx = at->x * at->x, yy = at->y * at->y, xy2 = 2 * at->x * at->y, r2 = xx + yy;
-  const double radial = 1 + r2 * (c.k1[k] + r2 * (c.k2[k] + r2 * c.k3[k]));
-  const double slope = 2 * (c.k1[k] + r2 * (2 * c.k2[k] + 3 * r2 * c.k3[k]));
-  const double ex = g.tx - (at->x * radial + c.p1[k] * xy2 + c.p2[k] * (r2 + 2 * xx));
-  const double ey = g.ty - (at->y * radial + c.p1[k] * (r2 + 2 * yy) + c.p2[k] * xy2);
-  at->d_xx = radial + xx * slope + 2 * c.p1[k] * at->y + 6 * c.p2[k] * at->x;
-  at->d_xy = 0.5 * xy2 * slope + 2 * c.p1[k] * at->x + 2 * c.p2[k] * at->y;
-  at->d_yy = radial + yy * slope + 6 * c.p1[k] * at->y + 2 * c.p2[k] * at->x;
-  const double determinant = 1 / (at->d_xx * at->d_yy - at->d_xy * at->d_xy);
-  at->x += (at->d_yy * ex - at->d_xy * ey) * determinant;
-  at->y += (at->d_xx * ey - at->d_xy * ex) * determinant;
-  return ex * ex + ey * ey;
-}
-
-// An error of 6e-7 before the last step is one of about 1e-13 after it, and the derivative is good to 1e-6.
-LONGARM_INLINE bool settled(const CameraPair& c, int k, double error2, const Ideal& at) {
-  return (error2 < 4e-13) & (at.x * at.x + at.y * at.y <= c.max_radius2[k]);
 }
 
 // The middle of the common perpendicular, then one Gauss-Newton step: what is left is second order in the

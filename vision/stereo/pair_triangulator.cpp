@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/LU>
+
 #include "core/require.h"
 #include "vision/camera/lens.h"
 
@@ -11,6 +13,36 @@ namespace longarm::vision {
 namespace {
 
 using Eigen::Vector2d;
+
+// The polynomial that undoes the radial part at Chebyshev's places between the middle and the farthest pixel.
+void setInverseRadial(const CameraModel& camera, double max_radius2, double* s) {
+  constexpr int n = internal::kInverseTerms;
+  const auto& d = camera.distortion;
+  const auto distorted2 = [&](double r2) {
+    const double radial = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+    return r2 * radial * radial;
+  };
+  // How far the picture's corners are out, before the lens; the least ideal radius that reaches there.
+  double reach2 = 0;
+  for (const double u : {0.0, static_cast<double>(camera.width)}) {
+    for (const double v : {0.0, static_cast<double>(camera.height)}) {
+      const double y = (v - camera.cy) / camera.fy, x = (u - camera.cx - camera.skew * y) / camera.fx;
+      reach2 = std::max(reach2, x * x + y * y);
+    }
+  }
+  double low = 0, high = std::min(max_radius2, 4 * reach2);
+  for (int i = 0; i < 40 && high - low > 1e-6 * high; ++i) (distorted2(0.5 * (low + high)) < reach2 ? low : high) = 0.5 * (low + high);
+  Eigen::Matrix<double, n, n> powers;
+  Eigen::Matrix<double, n, 1> values;
+  for (int i = 0; i < n; ++i) {
+    const double r2 = 0.5 * high * (1 - std::cos((i + 0.5) * std::acos(-1.0) / n));
+    const double rr = distorted2(r2);
+    values[i] = (std::sqrt(r2 / rr) - 1) / rr;
+    for (int j = 0; j < n; ++j) powers(i, j) = std::pow(rr / reach2, j);
+  }
+  const Eigen::Matrix<double, n, 1> found = powers.partialPivLu().solve(values);
+  for (int j = 0; j < n; ++j) s[j] = found[j] / std::pow(reach2, j);
+}
 
 void setCamera(const View& view, std::size_t k, internal::CameraPair* pair) {
   const CameraModel& camera = view.camera;
@@ -27,11 +59,9 @@ void setCamera(const View& view, std::size_t k, internal::CameraPair* pair) {
   pair->p1[k] = d[2];
   pair->p2[k] = d[3];
   pair->k3[k] = d[4];
-  // Reversion of r + k1 r^3 + k2 r^5 + k3 r^7.
-  pair->s1[k] = -d[0];
-  pair->s2[k] = 3 * d[0] * d[0] - d[1];
-  pair->s3[k] = -12 * d[0] * d[0] * d[0] + 8 * d[0] * d[1] - d[4];
+  setInverseRadial(camera, internal::monotoneRadius2(camera), pair->inverse_radial[k]);
   pair->max_radius2[k] = internal::monotoneRadius2(camera);
+  pair->sigma[k] = view.sigma_px;
   pair->weight[k] = 1 / (view.sigma_px * view.sigma_px);
   for (int i = 0; i < 3; ++i) {
     pair->axis_x[k][i] = view.X_WC.linear()(i, 0);
@@ -48,7 +78,16 @@ PairTriangulator::PairTriangulator(const View& a, const View& b, double refuse_p
   setCamera(a, 0, &m_pair);
   setCamera(b, 1, &m_pair);
   const Eigen::Vector3d baseline = b.X_WC.translation() - m_p_WA;
-  for (int i = 0; i < 3; ++i) m_pair.baseline[i] = baseline[i];
+  for (int i = 0; i < 3; ++i) {
+    m_pair.centre[i] = m_p_WA[i];
+    m_pair.baseline[i] = baseline[i];
+  }
+  const Eigen::Matrix3d to_a = a.X_WC.linear().transpose(), R = to_a * b.X_WC.linear();
+  const Eigen::Vector3d shift = to_a * baseline;
+  for (int i = 0; i < 3; ++i) {
+    m_pair.shift[i] = shift[i];
+    for (int j = 0; j < 3; ++j) m_pair.rotation[i][j] = R(i, j);
+  }
   const double sine = std::sin(refuse_parallax);
   m_pair.min_sine2 = sine * sine;
 }
@@ -70,28 +109,19 @@ bool PairTriangulator::locate(const Vector2d& pixel_a, const Vector2d& pixel_b, 
 std::size_t PairTriangulator::locateAll(const std::vector<Vector2d>& pixels_a, const std::vector<Vector2d>& pixels_b,
                                         std::vector<Eigen::Vector3d>* points) const {
   LONGARM_REQUIRE(pixels_a.size() == pixels_b.size(), "PairTriangulator: lists of different lengths");
-  constexpr std::size_t kBlock = 256;        // its arrays stay in the nearest cache
-  double in[4][kBlock], out[4][kBlock];
   points->resize(pixels_a.size());
-  std::size_t located = 0;
-  for (std::size_t first = 0; first < pixels_a.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, pixels_a.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      in[0][i] = pixels_a[first + i].x();
-      in[1][i] = pixels_a[first + i].y();
-      in[2][i] = pixels_b[first + i].x();
-      in[3][i] = pixels_b[first + i].y();
-    }
-    internal::solvePixelsOfMany(m_pair, static_cast<int>(count), {in[0], in[1], in[2], in[3]}, {out[0], out[1], out[2], out[3]});
-    for (std::size_t i = 0; i < count; ++i) {
-      Eigen::Vector3d& point = (*points)[first + i];
-      point = m_p_WA + Eigen::Vector3d(out[0][i], out[1][i], out[2][i]);
-      PairPoint thorough;
-      // What the quick lens inversion cannot do may still have an answer.
-      if (out[3][i] == 0 && locate(pixels_a[first + i], pixels_b[first + i], &thorough)) point = thorough.xyz;
-      else if (out[3][i] == 0) point.setConstant(std::numeric_limits<double>::quiet_NaN());
-      located += std::isnan(point.x()) ? 0 : 1;
-    }
+  if (pixels_a.empty()) return 0;
+  const std::size_t whole = pixels_a.size() / internal::kPairLanes * internal::kPairLanes;
+  const double *a = pixels_a.front().data(), *b = pixels_b.front().data();
+  auto located = static_cast<std::size_t>(internal::solvePixelsOfMany(m_pair, static_cast<int>(whole), a, b, points->front().data()));
+  if (located == pixels_a.size()) return located;
+  // The rest, and what the quick lens inversion cannot do.
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    if (i < whole && !std::isnan((*points)[i].x())) continue;
+    PairPoint one;
+    const bool found = locate(pixels_a[i], pixels_b[i], &one);
+    (*points)[i] = found ? one.xyz : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    located += found ? 1 : 0;
   }
   return located;
 }

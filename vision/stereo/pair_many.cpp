@@ -1,0 +1,32 @@
+#include "vision/stereo/pair_many.h"
+
+#include "vision/stereo/pair_lanes.h"
+
+namespace longarm::vision::internal {
+namespace {
+
+typedef double Two __attribute__((vector_size(16)));
+
+int solveManyAnywhere(const CameraPair& c, int n, const double* pixels_a, const double* pixels_b, double* points) {
+  return pair_lanes::solveMany<Two>(c, n, pixels_a, pixels_b, points);
+}
+
+auto widest() {
+#ifdef LONGARM_WIDE_LANES
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd")) {
+    return solveManyAvx512;
+  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return solveManyAvx2;
+#endif
+  return solveManyAnywhere;
+}
+
+}  // namespace
+
+int solvePixelsOfMany(const CameraPair& pair, int n, const double* pixels_a, const double* pixels_b, double* points) {
+  static const auto solve = widest();
+  return solve(pair, n, pixels_a, pixels_b, points);
+}
+
+}  // namespace longarm::vision::internal
