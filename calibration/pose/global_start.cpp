@@ -5,8 +5,12 @@
 
 #include <Eigen/Dense>
 
+#include "calibration/pose/rotation_descent.h"
+
 namespace longarm::calibration {
 namespace {
+
+constexpr double kMeeting2 = 2e-5;         // squared difference of rotations 3 mrad apart
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -78,6 +82,30 @@ double descend(const RotationForm& f, Eigen::Matrix3d* R) {
   return cost;
 }
 
+// The 24 descents together until they are nearly there; of those that meet, one goes on.
+std::vector<Eigen::Matrix3d> distinctMinima(const RotationForm& form) {
+  internal::RotationCost cost;
+  for (int i = 0; i < 9; ++i) {
+    for (int j = 0; j < 9; ++j) cost.M[i][j] = form.M(i, j);
+    cost.g[i] = form.g[i];
+  }
+  internal::Rotations at;
+  const auto& starts = cubeRotations();
+  for (int k = 0; k < internal::kDescents; ++k) {
+    for (int i = 0; i < 9; ++i) at.R[i][k] = starts[static_cast<std::size_t>(k)].data()[i];
+  }
+  internal::descendTogether(cost, &at);
+  std::vector<Eigen::Matrix3d> out;
+  for (int k = 0; k < internal::kDescents; ++k) {
+    Eigen::Matrix3d R;
+    for (int i = 0; i < 9; ++i) R.data()[i] = at.R[i][k];
+    if (!R.allFinite()) continue;
+    const bool known = std::any_of(out.begin(), out.end(), [&](const Eigen::Matrix3d& other) { return (other - R).squaredNorm() < kMeeting2; });
+    if (!known) out.push_back(R);
+  }
+  return out;
+}
+
 }  // namespace
 
 const std::vector<Eigen::Matrix3d>& cubeRotations() {
@@ -99,8 +127,7 @@ const std::vector<Eigen::Matrix3d>& cubeRotations() {
 std::vector<RayFit> fitRays(const std::vector<RayToPoint>& observations) {
   const RotationForm form = formOf(observations);
   std::vector<RayFit> found;
-  for (const auto& start : cubeRotations()) {
-    Eigen::Matrix3d R = start;
+  for (Eigen::Matrix3d R : distinctMinima(form)) {
     const double misses = descend(form, &R);
     if (!R.allFinite() || !std::isfinite(misses)) continue;
     const bool known = std::any_of(found.begin(), found.end(), [&](const RayFit& f) {

@@ -13,11 +13,8 @@ int solveManyAnywhere(const CameraPair& c, int n, const double* pixels_a, const 
 
 auto widest() {
 #ifdef LONGARM_WIDE_LANES
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd")) {
-    return solveManyAvx512;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return solveManyAvx2;
+  if (processorLanes() == ProcessorLanes::kEight) return solveManyAvx512;
+  if (processorLanes() == ProcessorLanes::kFour) return solveManyAvx2;
 #endif
   return solveManyAnywhere;
 }
