@@ -67,12 +67,11 @@ std::vector<int> allIndices(std::size_t n) {
   return out;
 }
 
-Found findChessboard(const cv::Mat& grey, const BoardSpec& spec, int side = kSearchSide) {
+Found findChessboard(const cv::Mat& grey, const BoardSpec& spec, int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE) {
   double scale = 1;
-  const cv::Mat small = searchImage(grey, side, &scale);
+  const cv::Mat small = searchImage(grey, kSearchSide, &scale);
   Found found;
   const cv::Size size(spec.columns, spec.rows);
-  const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
   if (!cv::findChessboardCorners(small, size, found.pixels, flags)) return {};
   toFullSize(scale, &found.pixels);
   refine(grey, spec.half_window, &found.pixels);
@@ -80,12 +79,16 @@ Found findChessboard(const cv::Mat& grey, const BoardSpec& spec, int side = kSea
   return found;
 }
 
-// Most live pictures hold no board: the check on a small picture says so at once.
-Found findChessboardLive(const cv::Mat& grey, const BoardSpec& spec) {
+bool mayHoldChessboard(const cv::Mat& grey, const BoardSpec& spec, int side) {
   double scale = 1;
-  const cv::Mat small = searchImage(grey, kLiveSide, &scale);
-  if (!cv::checkChessboard(small, cv::Size(spec.columns, spec.rows))) return {};
-  const Found quick = scale < 1 ? findChessboard(grey, spec, kLiveSide) : Found{};
+  return cv::checkChessboard(searchImage(grey, side, &scale), cv::Size(spec.columns, spec.rows));
+}
+
+// Most live pictures hold no board: a check on small pictures says so soon.  Those that do are mostly lit evenly:
+// one threshold finds the squares sooner than one for every neighbourhood.
+Found findChessboardLive(const cv::Mat& grey, const BoardSpec& spec) {
+  if (!mayHoldChessboard(grey, spec, kLiveSide) && !mayHoldChessboard(grey, spec, kLiveSide * 3 / 2)) return {};
+  const Found quick = findChessboard(grey, spec, 0);
   return quick.index.empty() ? findChessboard(grey, spec) : quick;
 }
 
