@@ -11,6 +11,8 @@
 
 #include "core/text.h"
 #include "planning/collision/collision_world.h"
+#include "planning/macros/feature_geometry.h"
+#include "planning/macros/tool_shape.h"
 #include "planning/robot/ik.h"
 #include "tests/planning/macro_scene.h"
 
@@ -50,12 +52,15 @@ class Queries {
  public:
   Queries(std::string macro, unsigned seed) : m_macro(std::move(macro)), m_random(seed), m_cell(tests::builtIn()) {}
 
-  // The next query that is feasible in this scene; for motions from here, as a slow walk along the path finds it.
+  // The next query that is feasible in this scene: for motions from here as a slow walk along the path finds it, for
+  // those that need one hard posture as a long search for it does.
   Query next(const std::vector<WorldObject>& scene) {
-    for (;;) {
+    for (;; ++m_refused) {
       if (auto query = draw(scene)) return *std::move(query);
     }
   }
+  // Drawn but not feasible.
+  int refused() const { return m_refused; }
 
  private:
   std::optional<Query> draw(const std::vector<WorldObject>& scene) {
@@ -63,10 +68,10 @@ class Queries {
     query.start = tests::configuration(m_cell, m_random.unit() < 0.5 ? "home" : "ready");
     if (m_macro == "look_at" || m_macro == "touch" || m_macro == "move_above" || m_macro == "place_here") return aPoint(query);
     if (m_macro == "approach_from_side") return aPipe(query);
-    if (m_macro == "aim_along_axis" || m_macro == "insert_along") return anAxis(query);
+    if (m_macro == "aim_along_axis" || m_macro == "insert_along") return anAxis(query, scene);
     if (m_macro == "place_disruptor") return anEdge(query);
     if (m_macro == "surface_scan" || m_macro == "follow_perimeter" || m_macro == "press") return aSurface(query);
-    if (m_macro == "grasp_by_faces" || m_macro == "push_face" || m_macro == "scan_faces") return aBox(query);
+    if (m_macro == "grasp_by_faces" || m_macro == "push_face" || m_macro == "scan_faces") return aBox(query, scene);
     return fromHere(query, scene);
   }
 
@@ -87,12 +92,13 @@ class Queries {
   }
 
   // Lines that lead away from the arm, within 40 degrees.
-  std::optional<Query> anAxis(Query query) {
+  std::optional<Query> anAxis(Query query, const std::vector<WorldObject>& scene) {
     const Vector3d p = tests::randomPlace(m_random, 0.75, 0.95, 0.4, 0.7);
     const double yaw = std::atan2(p.y(), p.x()) + m_random.uniform(-0.5, 0.5), pitch = m_random.uniform(-0.5, 0.5);
     const Vector3d d(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch));
     query.feature = featureOf(FeatureKind::kLine, {p, p + 0.15 * d});
     if (m_macro == "insert_along") query.arguments = {{"depth", m_random.uniform(0.02, 0.1)}};
+    if (m_macro == "aim_along_axis" && !canHold(query, {axisEntry(p, d), axisEntry(p + 0.15 * d, -d)}, scene)) return {};
     return query;
   }
 
@@ -118,7 +124,7 @@ class Queries {
     return query;
   }
 
-  std::optional<Query> aBox(Query query) {
+  std::optional<Query> aBox(Query query, const std::vector<WorldObject>& scene) {
     const Vector3d p = tests::randomPlace(m_random, 0.65, 0.8, 0.35, 0.55);
     const double yaw = std::atan2(p.y(), p.x()) + m_random.uniform(-0.7, 0.7);
     const Eigen::Matrix3d R = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
@@ -128,7 +134,53 @@ class Queries {
     for (int k = 0; k < 3; ++k) points.push_back(o + 2 * half[k] * R.col(k));
     query.feature = featureOf(FeatureKind::kTriad, points);
     if (m_macro != "scan_faces") query.touched = {"mark"};
+    if (m_macro == "push_face" && !canHold(query, pushEnds(query.feature), scene)) return {};
     return query;
+  }
+
+  // Where the tool stands before an end of a line that it looks along, 0.2 m away.
+  static Pose axisEntry(const Vector3d& end, const Vector3d& along) { return poseAt(end - 0.2 * along, rotationWithZ(along)); }
+
+  // Where the tool has pushed each face in that looks at the arm.
+  std::vector<Pose> pushEnds(const vision::Feature& feature) const {
+    RootedFeature rooted{"mark", {}, {}};
+    for (const auto& v : feature.vertices) rooted.points.push_back(v.xyz);
+    const BoxPatch box = *boxPatchFrom(rooted);
+    const Vector3d shoulder(0, 0, box.X_RO.translation().z());
+    std::vector<Pose> out;
+    for (int face = 0; face < 6; ++face) {
+      const Vector3d n = box.normal(face);
+      const double overhang = toolOverhang(m_cell, tests::configuration(m_cell, "ready"));
+      if (std::abs(n.z()) > 0.9 ? n.z() > 0 : n.dot(shoulder - box.X_RO.translation()) > 0) {
+        out.push_back(poseAt(box.faceCenter(face) + (overhang - 0.05) * n, rotationWithZ(-n)));
+      }
+    }
+    return out;
+  }
+
+  // Whether any posture clear of the scene holds the tool at one of the poses, whatever its roll: looked for much longer
+  // than planning does.  Without one the query is not feasible.
+  bool canHold(const Query& query, const std::vector<Pose>& poses, const std::vector<WorldObject>& scene) const {
+    CollisionOptions options;
+    options.moving = movingIndices(*m_cell.model, m_cell.arm);
+    static const AllowedPairs allowed = allowedPairs(m_cell.model);
+    const CollisionWorld world(m_cell.model, scene, allowed, options);
+    IkSolver solver(m_cell.model, m_cell.arm, query.start);
+    solver.setLimits(m_cell.arm_limits.lower, m_cell.arm_limits.upper);
+    IkOptions thorough;
+    thorough.restarts = 400;
+    thorough.free[2] = true;
+    const Eigen::VectorXd arm = groupPositions(*m_cell.model, m_cell.arm, query.start);
+    for (const Pose& pose : poses) {
+      const auto all = solver.solveAll(pose, arm, thorough);
+      if (!all) continue;
+      for (const auto& one : *all) {
+        Eigen::VectorXd q = query.start;
+        setGroupPositions(*m_cell.model, m_cell.arm, one.joints, q);
+        if (!world.inCollision(q)) return true;
+      }
+    }
+    return false;
   }
 
   // A random posture of the arm, and a line or arc that a walk in millimetres can follow clear of everything.
@@ -187,6 +239,7 @@ class Queries {
   Pose cellTool(const Eigen::VectorXd& q) const { return m_cell.model->forward(q, *m_cell.model->linkIndex(m_cell.arm.tip_link)); }
 
   std::string m_macro;
+  int m_refused = 0;
   Random m_random;
   const Workcell& m_cell;
 };
@@ -232,8 +285,8 @@ Tally run(const std::string& name, int queries, unsigned seed) {
   }
   std::vector<double> sorted = tally.seconds;
   std::sort(sorted.begin(), sorted.end());
-  std::printf("%-19s %4d queries, %4d planned (%.1f %%), %d violations, median %.3f s, p95 %.3f s, worst %.3f s\n", name.c_str(), tally.queries,
-              tally.planned, 100 * tally.share(), tally.violations, sorted[sorted.size() / 2], sorted[sorted.size() * 95 / 100], sorted.back());
+  std::printf("%-19s %4d queries, %4d planned (%.1f %%), %d violations, median %.3f s, p95 %.3f s, worst %.3f s; %d drawn were not feasible\n", name.c_str(), tally.queries,
+              tally.planned, 100 * tally.share(), tally.violations, sorted[sorted.size() / 2], sorted[sorted.size() * 95 / 100], sorted.back(), source.refused());
   for (const auto& [reason, count] : tally.failures) std::printf("  %d x %s\n", count, reason.c_str());
   return tally;
 }
