@@ -133,9 +133,12 @@ Status SimulatedOperator::aim(const std::function<Result<Points>()>& points) {
 Status SimulatedOperator::takePair() {
   auto* button = buttonOf(&m_window, m_window.actions().at(ActionId::kTakePair));
   if (button == nullptr) return failed(QStringLiteral("There is no button to take a pair."));
-  const auto taken = [this] {
-    return m_bench.document().paneSnapshot(PaneSide::kLeft) &&
-           m_bench.document().paneSnapshot(PaneSide::kRight);
+  const auto left = m_bench.document().paneSnapshotId(PaneSide::kLeft),
+             right = m_bench.document().paneSnapshotId(PaneSide::kRight);
+  const auto taken = [this, left, right] {
+    const auto& document = m_bench.document();
+    return document.paneSnapshot(PaneSide::kLeft) && document.paneSnapshot(PaneSide::kRight) &&
+           document.paneSnapshotId(PaneSide::kLeft) != left && document.paneSnapshotId(PaneSide::kRight) != right;
   };
   const auto answered = [&] {
     return taken() || m_bench.snapshots().state() == session::SnapshotController::State::kIdle;
@@ -148,6 +151,11 @@ Status SimulatedOperator::takePair() {
   }
   if (!taken()) return failed(QStringLiteral("No pair was taken: %1").arg(m_window.strip()->message()));
   return {};
+}
+
+void SimulatedOperator::setTremble(double sigma_px, unsigned seed) {
+  m_tremble_px = sigma_px;
+  m_random.seed(seed);
 }
 
 // The tool's own copy is the last thing that is drawn: a marker per vertex.
@@ -164,28 +172,32 @@ Result<Eigen::Vector2d> SimulatedOperator::handle(PaneSide side, int vertex, int
   return markers[markers.size() - static_cast<std::size_t>(vertices - vertex)];
 }
 
-Status SimulatedOperator::dragHandle(PaneSide side, int vertex, int vertices, const Eigen::Vector2d& to) {
+Status SimulatedOperator::dragHandle(PaneSide side, int vertex, int vertices, const Eigen::Vector2d& to,
+                                     Qt::KeyboardModifiers keys) {
   auto* canvas = m_window.pictures()->pane(side)->canvas();
   const auto from = handle(side, vertex, vertices);
   if (!from) return from.error();
   const auto start = canvas->widgetOfPixel(*from), end = canvas->widgetOfPixel(to);
   if (!start || !end) return failed(QStringLiteral("A handle lies outside the picture shown."));
-  m_hand.drag(canvas, *start, *end);
+  m_hand.drag(canvas, *start, *end, keys);
   return {};
 }
 
 Status SimulatedOperator::mark(ActionId tool, const Points& points,
-                               const std::function<Status(PaneSide)>& between) {
+                               const std::function<Status(PaneSide)>& between, bool off_curve) {
   const auto now = look();
   if (!now) return now.error();
   if (const Status chosen = click(tool); !chosen) return chosen;
   const auto before = m_bench.document().items().size();
   for (const auto side : {PaneSide::kLeft, PaneSide::kRight}) {
+    const Qt::KeyboardModifiers keys = off_curve && side == PaneSide::kRight ? Qt::ControlModifier : Qt::NoModifier;
     for (std::size_t vertex = 0; vertex < points.size(); ++vertex) {
-      const auto to = see(side, *now, points[vertex]);
+      auto to = see(side, *now, points[vertex]);
       if (!to) return to.error();
+      std::normal_distribution<double> normal(0, 1);
+      for (int axis = 0; axis < 2; ++axis) (*to)[axis] += m_tremble_px * normal(m_random);
       if (const Status dragged =
-              dragHandle(side, static_cast<int>(vertex), static_cast<int>(points.size()), *to);
+              dragHandle(side, static_cast<int>(vertex), static_cast<int>(points.size()), *to, keys);
           !dragged)
         return dragged;
     }

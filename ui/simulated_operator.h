@@ -5,6 +5,7 @@
 /// tests.
 
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,10 @@ class SimulatedOperator final {
   Status aim(const std::function<Result<Points>()>& points);
   Status takePair();
   /// Chooses the tool and drags its handles onto the points, in the left picture, then in the right.
-  /// @param between  Called after each picture; may be empty.
-  Status mark(ActionId tool, const Points& points,
-              const std::function<Status(vision::PaneSide)>& between = {});
+  /// @param between  Called after each picture; may be empty.  @param off_curve  With Ctrl in the right picture: where
+  /// things are seen, even off the epipolar curve.
+  Status mark(ActionId tool, const Points& points, const std::function<Status(vision::PaneSide)>& between = {},
+              bool off_curve = false);
   /// Presses the motion's button and waits for its plan.
   Status plan(const QString& macro, double timeout_s);
   Status resetStop();
@@ -55,6 +57,8 @@ class SimulatedOperator final {
   /// Clicks the visible button of an action.
   Status click(ActionId action);
 
+  /// From now on marks are off by a hand's tremble, normal with this sigma in each direction [px].
+  void setTremble(double sigma_px, unsigned seed);
   SimulatedHand& hand() { return m_hand; }
 
  private:
@@ -63,11 +67,14 @@ class SimulatedOperator final {
   QString panTiltOf(vision::PaneSide side) const;
   void turnTowards(vision::PaneSide side, const Truth& now, const Eigen::Vector3d& p_W);
   Result<Eigen::Vector2d> handle(vision::PaneSide side, int vertex, int vertices) const;
-  Status dragHandle(vision::PaneSide side, int vertex, int vertices, const Eigen::Vector2d& to);
+  Status dragHandle(vision::PaneSide side, int vertex, int vertices, const Eigen::Vector2d& to,
+                    Qt::KeyboardModifiers keys);
 
   MainWindow& m_window;
   Workbench& m_bench;
   SimulatedHand m_hand;
+  double m_tremble_px = 0;
+  std::mt19937_64 m_random;
 };
 
 }  // namespace longarm::ui
