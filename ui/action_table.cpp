@@ -19,6 +19,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kDelete, "Edit", "&Delete", "feature-delete", "Del", "Delete the selected features"},
       {I::kRename, "Edit", "Re&name", "feature-rename", "F2", "Give the selected feature another name"},
       {I::kDuplicate, "Edit", "D&uplicate", "", "Ctrl+D", "Copy the selected feature"},
+      {I::kCopyToPictures, "Edit", "Copy to the &pictures shown", "", "Ctrl+Shift+D", "Put the selected feature into these pictures where it should be seen, to be dragged into place"},
       {I::kNote, "Edit", "No&te...", "", "F4", "Write a note on the selected feature; it is shown beside its name"},
       {I::kNumbers, "Edit", "Edit &numbers...", "", "Ctrl+I", "Move the selected feature's vertices by numbers, in millimetres or pixels"},
       {I::kColour, "Edit", "C&olour...", "", "", "Give the selected features a colour of their own"},

@@ -15,6 +15,7 @@
 
 #include "calibration/intrinsics/compare_cameras.h"
 #include "core/clock.h"
+#include "session/controllers/calibrated_camera.h"
 #include "ui/calibrate_parts.h"
 
 namespace longarm::ui {
@@ -177,17 +178,27 @@ void CalibrateLibraryPanel::refreshCameras() {
   }
   if (m_cameras->rowCount() > 0 && !m_cameras->selectionModel()->hasSelection()) m_cameras->selectRow(0);
   const auto health = m_bench.health().of(chosenCamera().toStdString());
-  const auto camera = m_bench.calibration().fileInUse(chosenCamera().toStdString());
+  const auto camera = m_bench.calibration().fileInUse(chosenCamera().toStdString(), zoomOf(chosenCamera()));
   QString text = QString::fromStdString(health.why);
   if (!text.isEmpty() && camera) text += tr(" That is %1 mm at 1 m.").arg(1000 * health.off_px / camera->camera.fx, 0, 'f', 1);
   if (text.isEmpty()) text = tr("Picks placed off their curve (Ctrl), and corners clicked under Pose, tell whether a camera was knocked.");
   m_health->setText(text);
 }
 
+// The setting at which a zoom camera is looked at: where it stands, else where its table begins.
+std::optional<double> CalibrateLibraryPanel::zoomOf(const QString& camera) const {
+  const auto& workcell = m_bench.document().workcell();
+  const auto* spec = workcell ? workcell->camera(camera.toStdString()) : nullptr;
+  const auto calibration = spec != nullptr ? session::calibrationOf(*spec) : Result<std::shared_ptr<const vision::CameraCalibration>>(ErrorCode::kNotFound, "");
+  if (!calibration || !(*calibration)->hasTable()) return std::nullopt;
+  const auto now = m_bench.zoomDrive().zoom(camera);
+  return now ? now : std::optional<double>((*calibration)->range().first);
+}
+
 void CalibrateLibraryPanel::fillCamera(int row, const std::string& name) {
   const auto record = m_bench.calibration().recordInUse(name);
   const auto health = m_bench.health().of(name);
-  const auto file = m_bench.calibration().fileInUse(name);
+  const auto file = m_bench.calibration().fileInUse(name, zoomOf(QString::fromStdString(name)));
   const auto sure = file ? session::meanUncertainty(*file) : std::nullopt;
   setCell(m_cameras, row, 0, QString::fromStdString(name));
   setCell(m_cameras, row, 1, record ? QString::fromStdString(record->kind) : tr("workcell's file"));
@@ -286,12 +297,16 @@ void CalibrateLibraryPanel::refreshDifference() {
   setWhyNot(m_use, why, tr("Use this calibration from now on"));
   if (is_place) return refreshPlacement(record);
   if (spec == nullptr) return m_canvas->clearPicture(tr("No camera."));
-  const auto now = m_bench.calibration().fileInUse(camera.toStdString());
-  const auto then = vision::readCameraFile(record ? record->file : spec->calibration);
+  const auto now = m_bench.calibration().fileInUse(camera.toStdString(), zoomOf(camera));
+  auto other = *spec;
+  if (record) other.calibration = record->file;
+  const auto read = session::calibrationOf(other);
+  const auto then = read ? (*read)->at(zoomOf(camera)) : Result<vision::CameraFile>(read.error());
   if (!now || !then) return m_canvas->clearPicture(QString::fromStdString(now ? then.error().message : now.error().message));
   // The camera in its link, whether the file says so or not: what was mounted anew differs too.
   auto a = *now, b = *then;
   for (auto* file : {&a, &b}) {
+    if (file->pose && read && (*read)->hasTable()) file->pose->parent = spec->link;
     if (!file->pose || file->pose->parent != spec->link) file->pose = PoseInParent{spec->link, Pose::Identity()};
   }
   const auto difference = calibration::compareCameras(a, b, m_depth->value(), true);

@@ -52,6 +52,7 @@ class CalibrateLibraryPanel final : public QWidget {
   void refreshRecords();
   void refreshDifference();
   void refreshPlacement(const std::optional<session::CalibrationRecord>& record);
+  std::optional<double> zoomOf(const QString& camera) const;
   void fillCamera(int row, const std::string& name);
   void fillPlace(int row, session::Subject subject, const std::string& name);
   void exportTo(const session::CalibrationRecord& record);

@@ -14,7 +14,7 @@ FeaturePanel::FeaturePanel(session::TargetingController& targeting, Actions& act
   buildView();
   column->addWidget(m_view);
   for (const auto id : {ActionId::kRename, ActionId::kNote, ActionId::kNumbers, ActionId::kColour, ActionId::kHide, ActionId::kLock,
-                        ActionId::kGroup, ActionId::kUngroup, ActionId::kDuplicate, ActionId::kAddToWorld, ActionId::kDelete}) {
+                        ActionId::kGroup, ActionId::kUngroup, ActionId::kDuplicate, ActionId::kCopyToPictures, ActionId::kAddToWorld, ActionId::kDelete}) {
     m_view->addAction(actions.at(id));
   }
   m_view->setContextMenuPolicy(Qt::ActionsContextMenu);

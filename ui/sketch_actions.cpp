@@ -86,7 +86,7 @@ void SketchActions::refreshHistory() {
 void SketchActions::refreshSelection() {
   const bool any = m_targeting.document().selection().primary.valid();
   const QString why = any ? QString() : tr("Select a feature first.");
-  for (const auto id : {ActionId::kRename, ActionId::kDuplicate, ActionId::kNote, ActionId::kNumbers, ActionId::kColour, ActionId::kHide,
+  for (const auto id : {ActionId::kRename, ActionId::kDuplicate, ActionId::kCopyToPictures, ActionId::kNote, ActionId::kNumbers, ActionId::kColour, ActionId::kHide,
                         ActionId::kLock}) {
     m_actions.setWhyNot(id, why);
   }

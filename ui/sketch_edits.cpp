@@ -27,6 +27,8 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
     if (!done) m_bench.say(QString::fromStdString(done.error().message));
   };
   connect(actions.at(ActionId::kAddToWorld), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addSelected()); });
+  connect(actions.at(ActionId::kCopyToPictures), &QAction::triggered, this,
+          [this, tell] { tell(m_bench.targeting().copyToPictures(m_bench.document().selection().primary)); });
   connect(actions.at(ActionId::kAddKeepOut), &QAction::triggered, this,
           [this, tell] { tell(m_bench.world().addSelected(session::WorldRole::kKeepOut)); });
   connect(actions.at(ActionId::kAddWorkspace), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addWorkspace()); });
@@ -126,7 +128,7 @@ void SketchEdits::showMenu(const SnapshotPane& pane, const QPoint& global_positi
   };
   if (there.valid()) {
     add({ActionId::kRename, ActionId::kNote, ActionId::kNumbers, ActionId::kColour});
-    add({ActionId::kDuplicate, ActionId::kGroup, ActionId::kUngroup, ActionId::kHide, ActionId::kLock});
+    add({ActionId::kDuplicate, ActionId::kCopyToPictures, ActionId::kGroup, ActionId::kUngroup, ActionId::kHide, ActionId::kLock});
     add({ActionId::kAddToWorld, ActionId::kAddKeepOut, ActionId::kDelete});
   } else {
     add({ActionId::kToolPoint, ActionId::kToolLine, ActionId::kToolPipe, ActionId::kToolPlane, ActionId::kToolTriad, ActionId::kToolMeasure});

@@ -19,6 +19,7 @@ struct CameraChange {
   Eigen::Matrix<double, 10, 10> lens_covariance = Eigen::Matrix<double, 10, 10>::Zero();
   std::optional<Pose> X_LC;                        ///< Optical frame in the camera's link.
   Matrix6d pose_covariance = Matrix6d::Zero();     ///< Of its split increment.
+  std::optional<double> zoom;                      ///< Setting at which it was found; all settings move with the mount.
   int observations = 0;
   double rms_px = 0;
   std::string raw, raw_ending;                     ///< What it was made from, as text; "csv", "json".

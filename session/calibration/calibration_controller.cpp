@@ -8,6 +8,7 @@
 #include "core/clock.h"
 #include "core/text.h"
 #include "session/calibration/solve_again.h"
+#include "session/controllers/calibrated_camera.h"
 
 namespace longarm::session {
 
@@ -84,11 +85,15 @@ std::shared_ptr<const planning::Workcell> CalibrationController::workcellInUse()
   return any ? changed : m_plain;
 }
 
-Result<vision::CameraFile> CalibrationController::fileInUse(const std::string& camera) const {
+Result<vision::CameraFile> CalibrationController::fileInUse(const std::string& camera, std::optional<double> zoom) const {
   const auto& workcell = m_document.workcell();
   const auto* spec = workcell ? workcell->camera(camera) : nullptr;
   if (spec == nullptr) return Error{ErrorCode::kNotFound, "The workcell has no camera \"" + camera + "\"."};
-  return vision::readCameraFile(spec->calibration);
+  const auto calibration = calibrationOf(*spec);
+  if (!calibration) return calibration.error();
+  auto file = (*calibration)->at(zoom);
+  if (file && file->pose && (*calibration)->hasTable()) file->pose->parent = spec->link;
+  return file;
 }
 
 std::optional<CalibrationRecord> CalibrationController::recordInUse(const std::string& camera) const {
@@ -178,9 +183,20 @@ QString CalibrationController::whyWorse(const CameraChange& change) const {
       .arg(QString::number(*b, 'f', 3), QString::number(*a, 'f', 3));
 }
 
+// A camera with a table keeps its lens at every setting; all settings move with the mount.
+Result<CalibrationRecord> CalibrationController::keepMount(const CameraChange& change, CalibrationRecord record) {
+  if (change.lens || !change.X_LC) {
+    return Error{ErrorCode::kInvalidInput, "Camera " + change.camera + " zooms: one lens does not describe it. Add this calibration to its table on the page Zoom."};
+  }
+  const auto now = fileInUse(change.camera, change.zoom);
+  if (!now) return now.error();
+  auto table = vision::readZoomFile(m_document.workcell()->camera(change.camera)->calibration);
+  if (!table) return table.error();
+  vision::moveMount(*change.X_LC * now->pose->pose.inverse(), &table->cameras.front());
+  return m_library.add(record, *table, change.raw, change.raw_ending);
+}
+
 Result<CalibrationRecord> CalibrationController::keep(const CameraChange& change) {
-  const auto file = changed(change);
-  if (!file) return file.error();
   CalibrationRecord record;
   record.workcell = m_plain ? m_plain->name : std::string();
   record.name = change.camera;
@@ -189,6 +205,11 @@ Result<CalibrationRecord> CalibrationController::keep(const CameraChange& change
   record.wall_time_s = wallTime_s();
   record.observations = change.observations;
   record.rms_px = change.rms_px;
+  const auto* spec = m_document.workcell() ? m_document.workcell()->camera(change.camera) : nullptr;
+  const auto calibration = spec != nullptr ? calibrationOf(*spec) : Result<std::shared_ptr<const vision::CameraCalibration>>(ErrorCode::kNotFound, "");
+  if (calibration && (*calibration)->hasTable()) return keepMount(change, std::move(record));
+  const auto file = changed(change);
+  if (!file) return file.error();
   record.uncertainty_px = meanUncertainty(*file).value_or(-1);
   return m_library.add(record, *file, change.raw, change.raw_ending);
 }

@@ -35,8 +35,9 @@ class CalibrationController final : public QObject {
   /// The same with the calibrations in use in place of the cameras' own files.
   std::shared_ptr<const planning::Workcell> workcellInUse() const;
 
-  /// @returns kNotFound (no such camera), or as readCameraFile.
-  Result<vision::CameraFile> fileInUse(const std::string& camera) const;
+  /// @param zoom  Setting, for a camera with a table; its pose is then in the camera's link.
+  /// @returns kNotFound (no such camera; a table and no setting), or as CameraCalibration::read and at.
+  Result<vision::CameraFile> fileInUse(const std::string& camera, std::optional<double> zoom = {}) const;
   /// The record in use; empty: the workcell's own file is.
   std::optional<CalibrationRecord> recordInUse(const std::string& camera) const;
   /// The camera file that a change would give.  @returns kInvalidInput: the picture's size differs; as fileInUse.
@@ -74,6 +75,7 @@ class CalibrationController final : public QObject {
   bool knows(Subject subject, const std::string& name) const;
 
   Result<CalibrationRecord> keep(const CameraChange& change);
+  Result<CalibrationRecord> keepMount(const CameraChange& change, CalibrationRecord record);
   Result<CalibrationRecord> keep(const PlaceChange& change);
 
   Document& m_document;

@@ -138,12 +138,13 @@ Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vis
   return keep(std::move(record), raw, raw_ending);
 }
 
-Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vision::ZoomFile& file) {
+Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const vision::ZoomFile& file, const std::string& raw,
+                                             const std::string& raw_ending) {
   const auto folder = newFolder(&record);
   if (!folder) return folder.error();
   record.file = *folder + "/camera.xml";
   if (const Status written = vision::writeZoomFile(record.file, file); !written) return written.error();
-  return keep(std::move(record), {}, {});
+  return keep(std::move(record), raw, raw_ending);
 }
 
 Result<CalibrationRecord> CameraLibrary::add(CalibrationRecord record, const Placement& placement, const std::string& raw,

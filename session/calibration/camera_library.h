@@ -49,7 +49,8 @@ class CameraLibrary {
   Result<CalibrationRecord> add(CalibrationRecord record, const vision::CameraFile& file, const std::string& raw = {},
                                 const std::string& raw_ending = {});
   /// The same for a zoom camera's table.
-  Result<CalibrationRecord> add(CalibrationRecord record, const vision::ZoomFile& file);
+  Result<CalibrationRecord> add(CalibrationRecord record, const vision::ZoomFile& file, const std::string& raw = {},
+                                const std::string& raw_ending = {});
   /// The same for where something stands or is mounted.
   Result<CalibrationRecord> add(CalibrationRecord record, const Placement& placement, const std::string& raw = {},
                                 const std::string& raw_ending = {});

@@ -176,6 +176,7 @@ CameraChange PoseController::change() const {
   change.kind = "pose";
   const auto& result = m_outcome->result;
   change.X_LC = result.T[0].inverse();
+  if (const auto from = m_document.snapshot(m_picks.front().snapshot)) change.zoom = from->view.zoom;
   const Matrix6d J = calibration::inverseIncrement(result.T[0]);
   change.pose_covariance = J * result.covariance.topLeftCorner<6, 6>() * J.transpose();
   change.rms_px = result.rms_px;

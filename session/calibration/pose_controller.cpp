@@ -12,6 +12,7 @@ using vision::OverlayShape;
 
 namespace {
 
+constexpr double kSameZoom = 1e-3;
 constexpr double kArrow = 10, kChord_px = 30;
 constexpr double kSamePlace_m = 0.001;
 constexpr std::size_t kLeast = 3;
@@ -82,9 +83,9 @@ const planning::WorldObject* PoseController::objectSpec() const {
 void PoseController::setCamera(const QString& camera) {
   if (camera.toStdString() == m_camera) return;
   m_camera = camera.toStdString();
-  refreshMount();
   m_snapshot = {};
   if (const auto all = snapshots(); !all.empty()) m_snapshot = all.back()->id;
+  refreshMount();
   m_picks.clear();
   refreshLandmarks();
   Q_EMIT snapshotsChanged();
@@ -129,9 +130,19 @@ bool PoseController::hangsOnPanTilt(const std::string& link) const {
   return false;
 }
 
-void PoseController::refreshMount() {
-  const auto file = m_calibration.fileInUse(m_camera);
-  m_X_LC = file && spec() != nullptr && file->pose && file->pose->parent == spec()->link ? file->pose->pose : Pose::Identity();
+Pose PoseController::mountAt(const vision::Snapshot* snapshot) const {
+  const auto file = m_calibration.fileInUse(m_camera, snapshot != nullptr ? snapshot->view.zoom : std::nullopt);
+  return file && spec() != nullptr && file->pose && file->pose->parent == spec()->link ? file->pose->pose : Pose::Identity();
+}
+
+void PoseController::refreshMount() { m_X_LC = mountAt(snapshot().get()); }
+
+bool PoseController::severalZooms() const {
+  const auto first = m_picks.empty() ? nullptr : m_document.snapshot(m_picks.front().snapshot);
+  return std::any_of(m_picks.begin(), m_picks.end(), [&](const LandmarkPick& pick) {
+    const auto from = m_document.snapshot(pick.snapshot);
+    return from && first && std::abs(from->view.zoom.value_or(0) - first->view.zoom.value_or(0)) > kSameZoom;
+  });
 }
 
 void PoseController::refreshGeometry() {
@@ -221,6 +232,7 @@ std::vector<SnapshotPtr> PoseController::snapshots() const {
 
 void PoseController::setSnapshot(SnapshotId id) {
   m_snapshot = id;
+  refreshMount();
   Q_EMIT changed();
 }
 
@@ -240,8 +252,14 @@ Pose PoseController::inUse() const {
   return Pose::Identity();   // T_dev: a correction of the foot, in the root
 }
 
+Pose PoseController::inUseAt(const vision::Snapshot& snapshot) const {
+  return m_unknown == Unknown::kExt ? mountAt(&snapshot).inverse() : inUse();
+}
+
 std::optional<calibration::LoopView> PoseController::loopView(const vision::Snapshot& snapshot) const {
-  return loopViewAt(configuration(snapshot), std::to_string(snapshot.id.value));
+  auto view = loopViewAt(configuration(snapshot), std::to_string(snapshot.id.value));
+  if (view) view->T_ext = mountAt(&snapshot).inverse();
+  return view;
 }
 
 std::optional<calibration::LoopView> PoseController::loopViewAt(const Eigen::VectorXd& q, const std::string& name) const {
@@ -365,7 +383,7 @@ std::vector<Eigen::Vector2d> PoseController::offsetsInUse() const {
   for (const auto& pick : m_picks) {
     const auto from = m_document.snapshot(pick.snapshot);
     if (!from || (record && from->wall_time_s < record->wall_time_s)) continue;
-    const auto at = projected(pick.landmark, *from, inUse());
+    const auto at = projected(pick.landmark, *from, inUseAt(*from));
     if (at) out.push_back(pick.pixel - *at);
   }
   return out;
@@ -376,7 +394,7 @@ std::optional<double> PoseController::missInUse() const {
   int count = 0;
   for (const auto& pick : m_picks) {
     const auto from = m_document.snapshot(pick.snapshot);
-    const auto at = from ? projected(pick.landmark, *from, inUse()) : std::nullopt;
+    const auto at = from ? projected(pick.landmark, *from, inUseAt(*from)) : std::nullopt;
     if (!at) continue;
     sum += (pick.pixel - *at).squaredNorm() / 2;
     ++count;
@@ -417,8 +435,9 @@ void PoseController::restart() {
   m_outcome.reset();
   m_chosen.reset();
   m_next_picture.clear();
-  m_stale = m_picks.size() >= kLeast;
-  if (spec() == nullptr) m_why = tr("There is no camera to calibrate: the workcell has none, or none is chosen.");
+  m_stale = m_picks.size() >= kLeast && !severalZooms();
+  if (severalZooms()) m_why = tr("The pictures were taken at different zooms: click in pictures of one setting, and remove the others' points.");
+  else if (spec() == nullptr) m_why = tr("There is no camera to calibrate: the workcell has none, or none is chosen.");
   else if (m_unknown == Unknown::kObj && objectSpec() == nullptr) m_why = tr("Choose the object whose place is unknown; it must stand in the workcell file.");
   else if (m_unknown == Unknown::kDev && spec()->pan_tilt.empty()) m_why = tr("Camera %1 hangs on no pan-tilt: its mount is T_ext.").arg(QString::fromStdString(m_camera));
   else if (snapshots().empty()) m_why = tr("Take a picture with camera %1 first.").arg(QString::fromStdString(m_camera));

@@ -142,6 +142,9 @@ class PoseController final : public QObject {
   /// The link that carries the pan-tilt, in the root; empty when it moved between the pictures.
   std::optional<Pose> footOfPanTilt() const;
   void refreshMount();
+  Pose mountAt(const vision::Snapshot* snapshot) const;    // the camera in its link, as in use at the picture's zoom
+  Pose inUseAt(const vision::Snapshot& snapshot) const;
+  bool severalZooms() const;               // among the pictures that are clicked in
   std::optional<calibration::LoopView> loopViewAt(const Eigen::VectorXd& q, const std::string& name) const;
   std::optional<calibration::PoseObservation> observationAt(const Landmark& landmark, const Eigen::VectorXd& q) const;
   std::string rawText() const;

@@ -296,6 +296,33 @@ CommandPtr duplicateItem(const Document& document, FeatureId id) {
                                    "Duplicate " + described(*item));
 }
 
+Result<CommandPtr> copyItemTo(const Document& document, FeatureId id, const std::vector<SnapshotId>& pictures) {
+  const SketchItem* item = document.item(id);
+  if (item == nullptr) return Error{ErrorCode::kNotFound, "That feature is gone."};
+  const auto& measured = document.measurement(id).feature;
+  if (!measured) return Error{ErrorCode::kRefused, described(*item) + " is not measured: nobody knows where it would be seen. Finish it first."};
+  if (item->pipe) return Error{ErrorCode::kRefused, described(*item) + " is a pipe: its outlines are others from there. Mark them anew."};
+  SketchItem copy = *item;
+  copy.id = document.nextFeatureId();
+  copy.name = document.freeName(item->kind, item->pipe);
+  copy.locked = false;
+  copy.group = 0;
+  copy.picks.clear();
+  for (const SnapshotId picture : pictures) {
+    const auto snapshot = document.snapshot(picture);
+    if (!snapshot) return Error{ErrorCode::kNotFound, "There is no picture to copy it to. Take or show one first."};
+    if (item->pick(picture, 0) != nullptr) return Error{ErrorCode::kRefused, described(*item) + " is marked in these pictures already. Show other ones first."};
+    for (std::size_t vertex = 0; vertex < measured->vertices.size(); ++vertex) {
+      const auto pixel = snapshot->view.project(measured->vertices[vertex].xyz);
+      if (!pixel || !snapshot->view.camera.containsPixel(*pixel)) {
+        return Error{ErrorCode::kRefused, "Vertex " + std::to_string(vertex + 1) + " of " + described(*item) + " is not in the picture of " + snapshot->view.name + ". Turn the camera there first."};
+      }
+      copy.setPick(picture, static_cast<int>(vertex), {*pixel, PickState::kUnplaced});
+    }
+  }
+  return CommandPtr(std::make_unique<AddItem>(std::move(copy), static_cast<std::size_t>(document.indexOf(id)) + 1, "Copy " + described(*item)));
+}
+
 CommandPtr moveItem(const Document& document, FeatureId id, std::size_t index) {
   const int from = document.indexOf(id);
   if (from < 0) return nullptr;

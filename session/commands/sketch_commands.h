@@ -29,6 +29,11 @@ CommandPtr noteItem(const Document& document, FeatureId id, const std::string& n
 CommandPtr groupItems(const Document& document, const std::vector<FeatureId>& ids, bool together);
 /// Copy with its own id and name, in no group.
 CommandPtr duplicateItem(const Document& document, FeatureId id);
+/// The feature in other pictures: a copy whose handles lie where they should be seen there, dashed and not measured until
+/// they are dragged.
+/// @returns kNotFound (no such feature or picture), kRefused: it is not measured, a pipe (its outlines differ from every
+///   side), marked there already, or a vertex is not in one of the pictures.
+Result<CommandPtr> copyItemTo(const Document& document, FeatureId id, const std::vector<SnapshotId>& pictures);
 /// Same item elsewhere in the list.
 CommandPtr moveItem(const Document& document, FeatureId id, std::size_t index);
 

@@ -146,6 +146,15 @@ void TargetingController::setColour(FeatureId id, std::optional<std::uint32_t> r
   push(colourItem(m_document, id, rgb));
 }
 void TargetingController::duplicate(FeatureId id) { push(duplicateItem(m_document, id)); }
+Status TargetingController::copyToPictures(FeatureId id) {
+  auto copy = copyItemTo(m_document, id, {m_document.paneSnapshotId(PaneSide::kLeft), m_document.paneSnapshotId(PaneSide::kRight)});
+  if (!copy) return copy.error();
+  const FeatureId made = m_document.nextFeatureId();
+  push(std::move(*copy));
+  select(made);
+  return {};
+}
+
 void TargetingController::remove(FeatureId id) { push(removeItems(m_document, {id})); }
 
 void TargetingController::removeSelected() {

@@ -65,6 +65,8 @@ class TargetingController final : public QObject {
   void select(FeatureId id);                       ///< Invalid: nothing.
   void select(const Selection& selection);
   void rename(FeatureId id, const QString& name);
+  /// A copy in the pictures that the panes show, to be dragged into place.  @returns as copyItemTo.
+  Status copyToPictures(FeatureId id);
   void setHidden(FeatureId id, bool hidden);
   void setLocked(FeatureId id, bool locked);
   void setColour(FeatureId id, std::optional<std::uint32_t> rgb);

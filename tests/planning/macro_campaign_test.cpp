@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "planning/collision/collision_world.h"
 #include "planning/macros/feature_geometry.h"
+#include "planning/macros/reach_advice.h"
 #include "planning/macros/tool_shape.h"
 #include "planning/robot/ik.h"
 #include "tests/planning/macro_scene.h"
@@ -98,7 +99,7 @@ class Queries {
     const Vector3d d(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch));
     query.feature = featureOf(FeatureKind::kLine, {p, p + 0.15 * d});
     if (m_macro == "insert_along") query.arguments = {{"depth", m_random.uniform(0.02, 0.1)}};
-    if (m_macro == "aim_along_axis" && !canHold(query, {axisEntry(p, d), axisEntry(p + 0.15 * d, -d)}, scene)) return {};
+    if (m_macro == "aim_along_axis" && !canHold(query, {{axisEntry(p, d)}, {axisEntry(p + 0.15 * d, -d)}}, scene)) return {};
     return query;
   }
 
@@ -134,33 +135,38 @@ class Queries {
     for (int k = 0; k < 3; ++k) points.push_back(o + 2 * half[k] * R.col(k));
     query.feature = featureOf(FeatureKind::kTriad, points);
     if (m_macro != "scan_faces") query.touched = {"mark"};
-    if (m_macro == "push_face" && !canHold(query, pushEnds(query.feature), scene)) return {};
+    if (m_macro == "push_face" && !canHold(query, pushes(query), scene)) return {};
     return query;
   }
 
   // Where the tool stands before an end of a line that it looks along, 0.2 m away.
   static Pose axisEntry(const Vector3d& end, const Vector3d& along) { return poseAt(end - 0.2 * along, rotationWithZ(along)); }
 
-  // Where the tool has pushed each face in that looks at the arm.
-  std::vector<Pose> pushEnds(const vision::Feature& feature) const {
+  // Before, at and pushed into each face that looks at the arm.
+  std::vector<std::vector<Pose>> pushes(const Query& query) const {
     RootedFeature rooted{"mark", {}, {}};
-    for (const auto& v : feature.vertices) rooted.points.push_back(v.xyz);
+    for (const auto& v : query.feature.vertices) rooted.points.push_back(v.xyz);
     const BoxPatch box = *boxPatchFrom(rooted);
-    const Vector3d shoulder(0, 0, box.X_RO.translation().z());
-    std::vector<Pose> out;
+    const Vector3d shoulder = reachOf(m_cell, query.start).shoulder;
+    const double overhang = toolOverhang(m_cell, query.start);
+    std::vector<std::vector<Pose>> out;
     for (int face = 0; face < 6; ++face) {
       const Vector3d n = box.normal(face);
-      const double overhang = toolOverhang(m_cell, tests::configuration(m_cell, "ready"));
-      if (std::abs(n.z()) > 0.9 ? n.z() > 0 : n.dot(shoulder - box.X_RO.translation()) > 0) {
-        out.push_back(poseAt(box.faceCenter(face) + (overhang - 0.05) * n, rotationWithZ(-n)));
-      }
+      if (n.dot((shoulder - box.X_RO.translation()).normalized()) <= 0.1) continue;
+      out.emplace_back();
+      for (const double out_m : {0.08, 0.0, -0.05}) out.back().push_back(poseAt(box.faceCenter(face) + (overhang + out_m) * n, rotationWithZ(-n)));
     }
     return out;
   }
 
-  // Whether any posture clear of the scene holds the tool at one of the poses, whatever its roll: looked for much longer
-  // than planning does.  Without one the query is not feasible.
-  bool canHold(const Query& query, const std::vector<Pose>& poses, const std::vector<WorldObject>& scene) const {
+  // Whether for all poses of one of the ways there is some posture clear of the scene that holds the tool there,
+  // whatever its roll: looked for much longer than planning does.  Without them the query is not feasible.
+  bool canHold(const Query& query, const std::vector<std::vector<Pose>>& ways, const std::vector<WorldObject>& scene) const {
+    return std::any_of(ways.begin(), ways.end(), [&](const std::vector<Pose>& poses) {
+      return std::all_of(poses.begin(), poses.end(), [&](const Pose& pose) { return canHold(query, pose, scene); });
+    });
+  }
+  bool canHold(const Query& query, const Pose& pose, const std::vector<WorldObject>& scene) const {
     CollisionOptions options;
     options.moving = movingIndices(*m_cell.model, m_cell.arm);
     static const AllowedPairs allowed = allowedPairs(m_cell.model);
@@ -171,16 +177,12 @@ class Queries {
     thorough.restarts = 400;
     thorough.free[2] = true;
     const Eigen::VectorXd arm = groupPositions(*m_cell.model, m_cell.arm, query.start);
-    for (const Pose& pose : poses) {
-      const auto all = solver.solveAll(pose, arm, thorough);
-      if (!all) continue;
-      for (const auto& one : *all) {
-        Eigen::VectorXd q = query.start;
-        setGroupPositions(*m_cell.model, m_cell.arm, one.joints, q);
-        if (!world.inCollision(q)) return true;
-      }
-    }
-    return false;
+    const auto all = solver.solveAll(pose, arm, thorough);
+    return all && std::any_of(all->begin(), all->end(), [&](const IkSolution& one) {
+      Eigen::VectorXd q = query.start;
+      setGroupPositions(*m_cell.model, m_cell.arm, one.joints, q);
+      return !world.inCollision(q);
+    });
   }
 
   // A random posture of the arm, and a line or arc that a walk in millimetres can follow clear of everything.

@@ -98,6 +98,57 @@ TEST_F(Field, AnObjectIsFoundWhereItStands) {
   EXPECT_TRUE(document.workcell()->objects.front().X_WO.isApprox(plain->objects.front().X_WO)) << "gone back from";
 }
 
+TEST_F(Field, AKnockedZoomCameraIsPutRightAtEverySetting) {
+  const auto cell = planning::loadBuiltInWorkcell("ptz");
+  ASSERT_TRUE(cell.ok()) << cell.error().message;
+  plain = std::make_shared<planning::Workcell>(*cell);
+  calibration.setWorkcell(plain);
+  document.setWorkcell(calibration.workcellInUse());
+  const std::string camera = "ptz_left";
+  Random random(86);
+  PoseController pose(document, calibration, jobs);
+  pose.setCamera(QString::fromStdString(camera));
+  const Pose knock = tests::poseOf({0.01, -0.014, 0.004}, {0.004, -0.003, 0.002});   // in the camera's link
+  // Looks down at the arm, which is held at several places.
+  int clicked = 0;
+  std::vector<SnapshotId> ids;
+  for (const double a1 : {0.2, 0.0, -0.2}) {
+    JointState state = arm(a1, -0.15, 2.15);
+    state.names.push_back("ptz_left_tilt_joint");
+    state.positions.conservativeResize(5);
+    state.positions[4] = 0.2;
+    state.velocities = Eigen::VectorXd::Zero(5);
+    ids.push_back(addSnapshot(camera, state, 1e9, 0.0));
+    const Pose X_WL = *linkPose(state, camera), X_LC = X_WL.inverse() * document.snapshot(ids.back())->view.X_WC;
+    clicked += clickAll(&pose, document, ids.back(), X_WL * knock * X_LC, &random, 14);
+  }
+  ASSERT_GE(clicked, 15);
+  ASSERT_TRUE(solved(pose));
+  ASSERT_TRUE(pose.outcome().has_value()) << pose.why().toStdString();
+  ASSERT_TRUE(pose.whyNotApply().isEmpty()) << pose.whyNotApply().toStdString();
+  const auto before = [&](double zoom) { return calibration.fileInUse(camera, zoom).value().pose->pose; };
+  const Pose wide = before(0.0), close = before(0.6);
+  ASSERT_TRUE(calibration.apply(pose.change()).ok());
+  for (const auto& [zoom, old] : {std::pair<double, Pose>{0.0, wide}, {0.6, close}}) {
+    const Pose now = calibration.fileInUse(camera, zoom).value().pose->pose, truth = knock * old;
+    EXPECT_LT(angleBetween(now.linear(), truth.linear()) / kDegree, 0.15) << zoom;
+    EXPECT_LT((now.translation() - truth.translation()).norm(), 0.004) << zoom;
+    EXPECT_GT(angleBetween(now.linear(), old.linear()) / kDegree, 0.8);
+  }
+  EXPECT_FALSE(calibration.recordInUse(camera)->raw.empty());
+  // Pictures of two zooms do not go together, and a board's lens belongs to the table.
+  pose.setSnapshot(addSnapshot(camera, document.snapshot(ids.back())->robot_state, 1e9, 0.5));
+  pose.setLandmark(0);
+  pose.pick({320, 240});
+  EXPECT_NE(pose.why().indexOf("different zooms"), -1) << pose.why().toStdString();
+  CameraChange lens;
+  lens.camera = camera;
+  lens.lens = calibration.fileInUse(camera, 0.1)->camera;
+  const Status refused = calibration.apply(lens);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("page Zoom"), std::string::npos) << refused.error().message;
+}
+
 TEST_F(Field, TooFewPointsAndALineOfPointsAreToldWithWhatToDo) {
   PoseController pose(document, calibration, jobs);
   pose.setCamera("drive");

@@ -158,6 +158,32 @@ TEST(SketchCommands, ShowASinglePictureWhereItWasAskedFor) {
   EXPECT_EQ(bench.document.paneSnapshotId(PaneSide::kRight), SnapshotId{2});
 }
 
+TEST(SketchCommands, CopyToOtherPicturesWhereItIsSeenButNotMeasuredBeforeItIsPlaced) {
+  Bench bench;
+  bench.history.push(addItem(trueLine(bench, 1)));
+  EXPECT_FALSE(copyItemTo(bench.document, {1}, {{1}, {2}}).ok()) << "marked there already";
+  EXPECT_FALSE(copyItemTo(bench.document, {1}, {{77}}).ok());
+  EXPECT_FALSE(copyItemTo(bench.document, {9}, {{1}}).ok());
+  bench.history.push(addSnapshots(bench.document, {tests::snapshotOf(3, bench.scene.left), tests::snapshotOf(4, bench.scene.right)}, PaneSide::kLeft));
+  auto copy = copyItemTo(bench.document, {1}, {{3}, {4}});
+  ASSERT_TRUE(copy.ok()) << copy.error().message;
+  bench.history.push(std::move(*copy));
+  ASSERT_EQ(bench.document.items().size(), 2U);
+  const SketchItem made = bench.document.items()[1];
+  for (int vertex = 0; vertex < 2; ++vertex) {
+    EXPECT_EQ(made.pick({1}, vertex), nullptr);
+    for (const auto& [from, to] : {std::pair<std::uint64_t, std::uint64_t>{1, 3}, {2, 4}}) {
+      ASSERT_NE(made.pick({to}, vertex), nullptr);
+      EXPECT_EQ(made.pick({to}, vertex)->state, PickState::kUnplaced);
+      EXPECT_LT((made.pick({to}, vertex)->pixel - bench.document.item({1})->pick({from}, vertex)->pixel).norm(), 0.01);
+    }
+  }
+  EXPECT_FALSE(bench.document.measurement(made.id).feature.has_value()) << "nobody has looked yet";
+  EXPECT_FALSE(copyItemTo(bench.document, made.id, {{1}, {2}}).ok()) << "not measured";
+  bench.history.undo();
+  EXPECT_EQ(bench.document.items().size(), 1U);
+}
+
 TEST(SketchCommands, DuplicateWithAnIdAndNameOfItsOwn) {
   Bench bench;
   bench.history.push(addItem(trueLine(bench, 1)));

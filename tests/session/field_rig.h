@@ -4,6 +4,7 @@
 /// A workcell with a crate, snapshots made without a robot, and an operator who clicks what a true camera sees.
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <QTemporaryDir>
@@ -39,16 +40,24 @@ class Field : public longarm::testing::EventLoopTest {
     state.velocities = Eigen::VectorXd::Zero(4);
     return state;
   }
-  SnapshotId addSnapshot(const std::string& camera, const JointState& state, double wall_s = 1e9) {
+  SnapshotId addSnapshot(const std::string& camera, const JointState& state, double wall_s = 1e9, std::optional<double> zoom = {}) {
     vision::Snapshot snapshot;
     snapshot.id = document.nextSnapshotId();
-    snapshot.view = cameraView(*document.workcell(), camera, state).value();
+    snapshot.view = cameraView(*document.workcell(), camera, state, zoom).value();
     snapshot.image = cv::Mat(480, 640, CV_8U, cv::Scalar(90));
     snapshot.robot_state = state;
     snapshot.source = "live";
     snapshot.wall_time_s = wall_s;
     document.insertSnapshot(document.snapshots().size(), std::make_shared<const vision::Snapshot>(snapshot));
     return snapshot.id;
+  }
+  /// Where the link that carries a camera is.
+  std::optional<Pose> linkPose(const JointState& state, const std::string& camera) const {
+    const auto& model = *document.workcell()->model;
+    const auto link = model.linkIndex(document.workcell()->camera(camera)->link);
+    Eigen::VectorXd q = model.neutral();
+    model.assign(state, q);
+    return link ? std::optional<Pose>(model.forward(q, *link)) : std::nullopt;
   }
   /// The workcell as the next start of the program would have it.
   std::shared_ptr<const planning::Workcell> afterRestart() {

@@ -97,6 +97,29 @@ Result<ZoomNode> zoomAt(const ZoomCamera& camera, double zoom) {
   return interpolate(nodes, zoom);
 }
 
+namespace {
+
+// The mount in the camera's optical frame.
+Pose exteriorOf(const ZoomNode& node) {
+  Pose X_CM = Pose::Identity();
+  X_CM.linear() = expSO3(rotvecOf(node));
+  X_CM.translation() << node.exterior[0], node.exterior[1], node.exterior[2];
+  return X_CM;
+}
+
+}  // namespace
+
+void moveMount(const Pose& X_MM, ZoomCamera* camera) {
+  for (auto& node : camera->nodes) {
+    const Pose X_CM = exteriorOf(node) * X_MM.inverse();
+    const Eigen::Vector3d turn = logSO3(X_CM.linear());
+    for (int i = 0; i < 3; ++i) {
+      node.exterior[static_cast<std::size_t>(i)] = X_CM.translation()[i];
+      node.exterior[static_cast<std::size_t>(3 + i)] = turn[i];
+    }
+  }
+}
+
 Result<CameraFile> cameraFileOf(const ZoomCamera& camera, const ZoomNode& node) {
   CameraFile out;
   CameraModel& c = out.camera;
@@ -108,10 +131,7 @@ Result<CameraFile> cameraFileOf(const ZoomCamera& camera, const ZoomNode& node) 
   c.cy = node.interior[4];
   c.distortion = {node.interior[5], node.interior[6], node.interior[7], node.interior[8], 0};
   if (auto status = validate(c); !status) return status.error();
-  Pose X_camera_mount = Pose::Identity();
-  X_camera_mount.linear() = expSO3(rotvecOf(node));
-  X_camera_mount.translation() << node.exterior[0], node.exterior[1], node.exterior[2];
-  out.pose = PoseInParent{(c.name.empty() ? std::string("camera") : c.name) + "_mount", X_camera_mount.inverse()};
+  out.pose = PoseInParent{(c.name.empty() ? std::string("camera") : c.name) + "_mount", exteriorOf(node).inverse()};
   return out;
 }
 

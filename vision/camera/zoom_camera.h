@@ -63,6 +63,10 @@ Eigen::Vector2d boresightOf(const ZoomNode& node);
 /// @returns kInvalidInput when there are no nodes or `zoom` lies outside them.  Pure function.
 Result<ZoomNode> zoomAt(const ZoomCamera& camera, double zoom);
 
+/// The camera knocked or mounted anew: its optical frame at every setting moves with the mount.
+/// @param X_MM  Where the mount frame has gone, in the mount frame it was [m, rad].
+void moveMount(const Pose& X_MM, ZoomCamera* camera);
+
 /// The node as a camera file: pose of the optical frame in "<name>_mount".  @returns as validate(CameraModel).
 Result<CameraFile> cameraFileOf(const ZoomCamera& camera, const ZoomNode& node);
 

@@ -5,7 +5,7 @@
 
 namespace longarm::vision::internal {
 
-constexpr int kInverseTerms = 7;
+constexpr int kInverseTerms = 6;
 
 /// Two cameras side by side, index 0 and 1, prepared once.
 struct CameraPair {
@@ -13,7 +13,8 @@ struct CameraPair {
   double k1[2], k2[2], p1[2], p2[2], k3[2];
   double inverse_radial[2][kInverseTerms];   ///< Of the radial part: r (1 + s[0] r^2 + s[1] r^4 + ...).
   double max_radius2[2];
-  double sigma[2], weight[2];            ///< sigma_px, 1 / sigma_px^2
+  double weight[2];                      ///< 1 / sigma_px^2
+  double noise_x[2], noise_y[2], noise_skew[2];    ///< sigma_px / fx, sigma_px / fy, sigma_px skew / (fx fy)
   double axis_x[2][3], axis_y[2][3], axis_z[2][3];   ///< Axes of the cameras, in the parent frame.
   double centre[3];                      ///< Of the first camera, in the parent frame [m].
   double baseline[3];                    ///< From the first camera's centre to the second's, in the parent frame [m].

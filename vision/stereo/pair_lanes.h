@@ -16,20 +16,19 @@ namespace longarm::vision::internal::pair_lanes {
 // order of the noise the maximum-likelihood point, as the Gauss-Newton step of one pair is.
 template <typename T>
 struct Shift {
-  T by_x, by_y;   // how the coplanarity of the rays changes with the pixel, in pixels of unit noise
+  T by_u, by_v;   // how the coplanarity of the rays changes with the pixel, in pixels of unit noise
 };
 template <typename T>
 LONGARM_INLINE Shift<T> shiftOf(const CameraPair& c, int k, const pair_lens::Ideal<T>& at, const T& inverse, const T& e_x, const T& e_y) {
   const T a = (at.d_yy * e_x - at.d_xy * e_y) * inverse, b = (at.d_xx * e_y - at.d_xy * e_x) * inverse;
-  const T by_u = a * c.inverse_fx[k];
-  return {by_u * c.sigma[k], (b - by_u * c.skew[k]) * (c.inverse_fy[k] * c.sigma[k])};
+  return {a * c.noise_x[k], b * c.noise_y[k] - a * c.noise_skew[k]};
 }
 template <typename T>
 LONGARM_INLINE void move(const CameraPair& c, int k, const Shift<T>& shift, const T& by, const T& inverse, pair_lens::Ideal<T>* at) {
-  const T dv = shift.by_y * by * c.inverse_fy[k] * c.sigma[k];
-  const T du = (shift.by_x * by * c.sigma[k] - c.skew[k] * dv) * c.inverse_fx[k];
-  at->x += (at->d_yy * du - at->d_xy * dv) * inverse;
-  at->y += (at->d_xx * dv - at->d_xy * du) * inverse;
+  const T scale = by * inverse;
+  const T dv = shift.by_v * c.noise_y[k], du = shift.by_u * c.noise_x[k] - shift.by_v * c.noise_skew[k];
+  at->x += (at->d_yy * du - at->d_xy * dv) * scale;
+  at->y += (at->d_xx * dv - at->d_xy * du) * scale;
 }
 
 template <typename Lanes>
@@ -52,6 +51,19 @@ LONGARM_INLINE Pixels<Lanes> load(const double* from) {
     odd[i] = 2 * i + 1;
   }
   return {__builtin_shuffle(first, second, even), __builtin_shuffle(first, second, odd)};
+}
+
+// Points leave as x y z x y z ...
+template <typename Lanes>
+LONGARM_INLINE void store(const Lanes place[3], double* to) {
+  constexpr int kLanes = kLanesOf<Lanes>;
+  double apart[3][kLanes];
+  std::memcpy(apart, place, sizeof apart);
+  for (int j = 0; j < kLanes; ++j) {
+    to[3 * j] = apart[0][j];
+    to[3 * j + 1] = apart[1][j];
+    to[3 * j + 2] = apart[2][j];
+  }
 }
 
 // n is a multiple of the lanes.  All in the first camera's frame until the end.  How many were located.
@@ -80,7 +92,7 @@ LONGARM_INLINE int solveMany(const CameraPair& c, int n, const double* pixels_a,
     const Shift<Lanes> shift_a = shiftOf(c, 0, a, inverse_a, nx, ny);
     const Shift<Lanes> shift_b = shiftOf<Lanes>(c, 1, b, inverse_b, mx * R[0][0] + my * R[1][0] + mz * R[2][0], mx * R[0][1] + my * R[1][1] + mz * R[2][1]);
     const Lanes e = a.x * nx + a.y * ny + nz;
-    const Lanes push = -e / (shift_a.by_x * shift_a.by_x + shift_a.by_y * shift_a.by_y + shift_b.by_x * shift_b.by_x + shift_b.by_y * shift_b.by_y);
+    const Lanes push = -e / (shift_a.by_u * shift_a.by_u + shift_a.by_v * shift_a.by_v + shift_b.by_u * shift_b.by_u + shift_b.by_v * shift_b.by_v);
     move(c, 0, shift_a, push, inverse_a, &a);
     move(c, 1, shift_b, push, inverse_b, &b);
     bx = R[0][0] * b.x + R[0][1] * b.y + R[0][2];
@@ -100,14 +112,7 @@ LONGARM_INLINE int solveMany(const CameraPair& c, int n, const double* pixels_a,
       place[k] = good ? place[k] : Lanes{} + std::numeric_limits<double>::quiet_NaN();
     }
     count += good;
-    double apart[3][kLanes];
-    std::memcpy(apart, place, sizeof apart);
-    double* to = points + 3 * i;
-    for (int j = 0; j < kLanes; ++j) {
-      to[3 * j] = apart[0][j];
-      to[3 * j + 1] = apart[1][j];
-      to[3 * j + 2] = apart[2][j];
-    }
+    store(place, points + 3 * i);
   }
   long located = 0;
   for (int j = 0; j < kLanes; ++j) located -= count[j];   // a mask's "true" is -1

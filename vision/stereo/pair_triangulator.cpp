@@ -61,7 +61,9 @@ void setCamera(const View& view, std::size_t k, internal::CameraPair* pair) {
   pair->k3[k] = d[4];
   setInverseRadial(camera, internal::monotoneRadius2(camera), pair->inverse_radial[k]);
   pair->max_radius2[k] = internal::monotoneRadius2(camera);
-  pair->sigma[k] = view.sigma_px;
+  pair->noise_x[k] = view.sigma_px / camera.fx;
+  pair->noise_y[k] = view.sigma_px / camera.fy;
+  pair->noise_skew[k] = view.sigma_px * camera.skew / (camera.fx * camera.fy);
   pair->weight[k] = 1 / (view.sigma_px * view.sigma_px);
   for (int i = 0; i < 3; ++i) {
     pair->axis_x[k][i] = view.X_WC.linear()(i, 0);
