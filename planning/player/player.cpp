@@ -252,6 +252,10 @@ struct Player::Impl {
     const double end = knots.back().t - now;
     if (out.points.size() > 1 && end - out.points.back().t < kMinPointSpacing_s) out.points.pop_back();
     out.points.push_back(pointAt(std::max(end, kMinPointSpacing_s), knots.back().state, true));
+    // Stands a while at its end: one that arrives late must not be over before.
+    while (out.points.back().t < options.commit_s - kMinPointSpacing_s) {
+      out.points.push_back(pointAt(std::min(options.commit_s, out.points.back().t + options.point_spacing_s), knots.back().state, true));
+    }
     out.sequence = ++sequence;
     return out;
   }
