@@ -158,6 +158,21 @@ TEST(Fixture, NoiseFreeCameraComesBackExactlyWithSkewAndDistortion) {
   EXPECT_GT(found->dlt_rms_px, 0.1) << "the linear solution knows no distortion";
 }
 
+TEST(Fixture, TheOrderOfPointsDoesNotMatter) {
+  Random random(37);
+  auto points = fixturePicture(&random, 0.5);
+  const auto first = calibrateFixture(points, 640, 480);
+  ASSERT_TRUE(first.ok()) << first.error().message;
+  for (int shuffle = 0; shuffle < 5; ++shuffle) {
+    std::shuffle(points.corners.begin(), points.corners.end(), random.engine());
+    const auto again = calibrateFixture(points, 640, 480);
+    ASSERT_TRUE(again.ok()) << again.error().message;
+    const auto lens = calibration::lensVector(first->camera), other = calibration::lensVector(again->camera);
+    EXPECT_LT(((other - lens).array() / (1 + lens.array().abs())).abs().maxCoeff(), 1e-6);
+    EXPECT_LT((again->X_WC.matrix() - first->X_WC.matrix()).cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
 // Empirical over predicted sigma, and mean of error^2 / variance, of `runs` fixtures with 0.5 px noise.
 void checkHonesty(int runs, double low, double high, double nees_margin) {
   Random random(36);

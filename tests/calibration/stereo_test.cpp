@@ -1,4 +1,6 @@
 // Stereo pairs and comparisons of calibrations.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "calibration/intrinsics/board_detector.h"
@@ -72,6 +74,27 @@ TEST(Stereo, CovarianceIsHonestAndAMovedPairIsLeftOut) {
   EXPECT_FALSE(found->pairs[3].used);
   EXPECT_NE(found->pairs[3].why, "");
   EXPECT_LT((found->X_LR.translation() - kRightFromLeft.inverse().translation()).norm(), 1e-3);
+}
+
+TEST(Stereo, TheOrderOfPairsAndCornersDoesNotMatter) {
+  Random random(93);
+  auto pairs = pairsOf(&random, 6, 0.3);
+  for (const bool refine : {false, true}) {
+    StereoOptions options;
+    options.refine = refine;
+    const auto first = calibrateStereo(pairs, fileOf(lens(533, 341)), fileOf(lens(537, 327)), options);
+    ASSERT_TRUE(first.ok()) << first.error().message;
+    for (int shuffle = 0; shuffle < 3; ++shuffle) {
+      std::shuffle(pairs.begin(), pairs.end(), random.engine());
+      for (auto& pair : pairs) {
+        std::shuffle(pair.left.corners.begin(), pair.left.corners.end(), random.engine());
+        std::shuffle(pair.right.corners.begin(), pair.right.corners.end(), random.engine());
+      }
+      const auto again = calibrateStereo(pairs, fileOf(lens(533, 341)), fileOf(lens(537, 327)), options);
+      ASSERT_TRUE(again.ok()) << again.error().message;
+      EXPECT_LT((again->X_LR.matrix() - first->X_LR.matrix()).cwiseAbs().maxCoeff(), 1e-6);
+    }
+  }
 }
 
 TEST(Stereo, NothingSeenByBothIsRefused) {

@@ -163,6 +163,12 @@ TEST_F(CalibrateWithRobot, AKnockedCameraIsNoticedBlocksTheMotionAndIsPutRightBy
   ASSERT_TRUE(SimulatedHand::waitFor([&] { return !pose.solving(); }, 60));
   look(QStringLiteral("knocked-pose-1920"));
   ASSERT_TRUE(pose.outcome().has_value()) << pose.why().toStdString();
+  // Found where it truly is, within what is said of it.
+  const auto found = pose.change();
+  const Pose X_WC = trueCamera("head_right"), X_WL = pose.viewNow()->X_WC * found.X_LC->inverse(), truth = X_WL.inverse() * X_WC;
+  Eigen::Matrix<double, 6, 1> off;
+  off << logSO3(found.X_LC->linear() * truth.linear().transpose()), found.X_LC->translation() - truth.translation();
+  for (int i = 0; i < 6; ++i) EXPECT_LT(std::abs(off[i]), 3 * std::sqrt(found.pose_covariance(i, i))) << "component " << i;
   ASSERT_TRUE(panel->applyButton()->isEnabled()) << panel->applyButton()->toolTip().toStdString();
   ASSERT_TRUE(hand.hold(panel->applyButton(), [this] { return bench->calibration().recordInUse("head_right").has_value(); }, 10));
 
