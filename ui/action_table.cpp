@@ -27,6 +27,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kUngroup, "Edit", "Ungrou&p", "", "Ctrl+Shift+J", "Take the selected features out of their group"},
       {I::kHide, "Edit", "&Hide or show", "feature-hide", "H", "Hide the selected features, or show them again"},
       {I::kLock, "Edit", "&Lock or unlock", "", "K", "Keep the selected features from being moved, or let them go"},
+      {I::kEndsDiffer, "Edit", "Ends di&ffer between pictures", "", "Shift+K", "The selected line is an edge whose ends are hidden or differ: its places in one picture need not be those in the other", true},
       {I::kSelectAll, "Edit", "Select &all", "", "Ctrl+A", "Select every feature"},
       {I::kCancel, "Edit", "&Cancel, deselect", "", "Esc", "Cancel the drag or the tool, then deselect"},
 

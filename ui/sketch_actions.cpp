@@ -54,6 +54,11 @@ void SketchActions::bind() {
     const auto* item = m_targeting.document().item(m_targeting.document().selection().primary);
     if (item != nullptr) toggle(&TargetingController::setLocked, item->locked);
   });
+  on(ActionId::kEndsDiffer, [this] {
+    const auto* item = m_targeting.document().item(m_targeting.document().selection().primary);
+    if (item != nullptr) m_targeting.setEdge(item->id, !item->edge);
+    refreshSelection();
+  });
   on(ActionId::kGroup, [this] { m_targeting.groupSelected(true); });
   on(ActionId::kUngroup, [this] { m_targeting.groupSelected(false); });
   auto* group = new QActionGroup(this);
@@ -90,6 +95,10 @@ void SketchActions::refreshSelection() {
                         ActionId::kLock}) {
     m_actions.setWhyNot(id, why);
   }
+  const auto* line = m_targeting.document().item(m_targeting.document().selection().primary);
+  const bool has_ends = line != nullptr && line->kind == vision::FeatureKind::kLine && !line->pipe;
+  m_actions.setWhyNot(ActionId::kEndsDiffer, has_ends ? QString() : tr("Select a line first."));
+  m_actions.at(ActionId::kEndsDiffer)->setChecked(has_ends && line->edge);
   const auto& selected = m_targeting.document().selection().items;
   m_actions.setWhyNot(ActionId::kGroup, selected.size() > 1 ? QString() : tr("Select two features or more first."));
   // An item that has just been removed may still be selected.

@@ -128,7 +128,7 @@ void SketchEdits::showMenu(const SnapshotPane& pane, const QPoint& global_positi
   };
   if (there.valid()) {
     add({ActionId::kRename, ActionId::kNote, ActionId::kNumbers, ActionId::kColour});
-    add({ActionId::kDuplicate, ActionId::kCopyToPictures, ActionId::kGroup, ActionId::kUngroup, ActionId::kHide, ActionId::kLock});
+    add({ActionId::kDuplicate, ActionId::kCopyToPictures, ActionId::kGroup, ActionId::kUngroup, ActionId::kHide, ActionId::kLock, ActionId::kEndsDiffer});
     add({ActionId::kAddToWorld, ActionId::kAddKeepOut, ActionId::kDelete});
   } else {
     add({ActionId::kToolPoint, ActionId::kToolLine, ActionId::kToolPipe, ActionId::kToolPlane, ActionId::kToolTriad, ActionId::kToolMeasure});

@@ -266,6 +266,12 @@ CommandPtr lockItem(const Document& document, FeatureId id, bool locked) {
   return edited(document, id, locked ? "Lock" : "Unlock", [&](SketchItem& item) { item.locked = locked; });
 }
 
+CommandPtr edgeItem(const Document& document, FeatureId id, bool edge) {
+  const SketchItem* item = document.item(id);
+  if (item == nullptr || item->kind != vision::FeatureKind::kLine || item->pipe) return nullptr;
+  return edited(document, id, edge ? "Ends differ" : "Ends correspond", [&](SketchItem& changed) { changed.edge = edge; });
+}
+
 CommandPtr colourItem(const Document& document, FeatureId id, std::optional<std::uint32_t> colour) {
   return edited(document, id, "Colour", [&](SketchItem& item) { item.colour = colour; });
 }
@@ -307,6 +313,7 @@ Result<CommandPtr> copyItemTo(const Document& document, FeatureId id, const std:
   copy.name = document.freeName(item->kind, item->pipe);
   copy.locked = false;
   copy.group = 0;
+  copy.edge = false;                       // its ends are those of the first picture now
   copy.picks.clear();
   for (const SnapshotId picture : pictures) {
     const auto snapshot = document.snapshot(picture);

@@ -23,6 +23,8 @@ CommandPtr replaceItem(const Document& document, SketchItem after, std::string l
 CommandPtr renameItem(const Document& document, FeatureId id, const std::string& name);
 CommandPtr hideItem(const Document& document, FeatureId id, bool hidden);
 CommandPtr lockItem(const Document& document, FeatureId id, bool locked);
+/// A line whose ends are others in every picture, or the same again.  Null for what is no line, or a pipe.
+CommandPtr edgeItem(const Document& document, FeatureId id, bool edge);
 CommandPtr colourItem(const Document& document, FeatureId id, std::optional<std::uint32_t> colour);
 CommandPtr noteItem(const Document& document, FeatureId id, const std::string& note);
 /// Makes one group of them (two or more), or takes them out of theirs.

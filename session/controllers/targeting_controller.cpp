@@ -141,6 +141,7 @@ void TargetingController::rename(FeatureId id, const QString& name) {
 }
 
 void TargetingController::setHidden(FeatureId id, bool hidden) { push(hideItem(m_document, id, hidden)); }
+void TargetingController::setEdge(FeatureId id, bool edge) { push(edgeItem(m_document, id, edge)); }
 void TargetingController::setLocked(FeatureId id, bool locked) { push(lockItem(m_document, id, locked)); }
 void TargetingController::setColour(FeatureId id, std::optional<std::uint32_t> rgb) {
   push(colourItem(m_document, id, rgb));

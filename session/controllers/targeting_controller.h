@@ -69,6 +69,7 @@ class TargetingController final : public QObject {
   Status copyToPictures(FeatureId id);
   void setHidden(FeatureId id, bool hidden);
   void setLocked(FeatureId id, bool locked);
+  void setEdge(FeatureId id, bool edge);           ///< See edgeItem.
   void setColour(FeatureId id, std::optional<std::uint32_t> rgb);
   void setNote(FeatureId id, const QString& note);
   void groupSelected(bool together);

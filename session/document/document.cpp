@@ -6,6 +6,7 @@
 #include "core/require.h"
 #include "core/text.h"
 #include "vision/stereo/measure.h"
+#include "vision/stereo/line.h"
 #include "vision/stereo/pipe.h"
 
 namespace longarm::session {
@@ -119,6 +120,26 @@ Measurement Document::measurePipe(const SketchItem& item) const {
   return {std::move(*feature), {}};
 }
 
+Measurement Document::measureEdge(const SketchItem& item) const {
+  vision::LinePicks picks;
+  for (const auto& [id, list] : item.picks) {
+    const SnapshotPtr picture = snapshot(id);
+    if (!picture || !item.placedIn(id)) continue;
+    for (int vertex = 0; vertex < 2; ++vertex) {
+      const Eigen::Vector2d& pixel = item.pick(id, vertex)->pixel;
+      if (!picture->view.camera.containsPixel(pixel, 0.5)) return {{}, offPicture(item, vertex, picture->view, pixel)};
+    }
+    picks.along.push_back({&picture->view, item.pick(id, 0)->pixel, item.pick(id, 1)->pixel});
+  }
+  if (picks.along.size() < 2) {
+    return {{}, "'" + item.name + "' is not measured: it is marked in " + (picks.along.empty() ? "no picture yet" : "one picture only") +
+                    ". Mark two places of the edge in two pictures; they need not be the same."};
+  }
+  auto feature = vision::estimateLine(item.name, picks);
+  if (!feature) return {{}, feature.error().message};
+  return {std::move(*feature), {}};
+}
+
 bool Document::elsewhere(const std::optional<BaseState>& place) const {
   return m_base && place && !samePlace(*m_base, *place);
 }
@@ -186,6 +207,7 @@ Measurement Document::measure(const SketchItem& item) const {
 
 Measurement Document::measureAll(const SketchItem& item) const {
   if (item.pipe) return measurePipe(item);
+  if (item.edge) return measureEdge(item);
   std::vector<std::vector<vision::Sighting>> vertices(static_cast<std::size_t>(vision::vertexCount(item.kind)));
   for (const auto& [id, list] : item.picks) {
     const SnapshotPtr picture = snapshot(id);

@@ -177,6 +177,7 @@ class Document {
   void remeasure(const SketchItem& item);
   Measurement measureAll(const SketchItem& item) const;
   Measurement measurePipe(const SketchItem& item) const;
+  Measurement measureEdge(const SketchItem& item) const;
   std::vector<std::optional<BaseState>> placesOf(const SketchItem& item) const;
   void tellItemsOf(const std::set<SnapshotId>& pictures);
   bool elsewhere(const std::optional<BaseState>& place) const;

@@ -116,6 +116,7 @@ json itemJson(const SketchItem& item) {
               {"hidden", item.hidden}, {"locked", item.locked}, {"picks", std::move(picks)}};
   if (item.colour) out["colour"] = *item.colour;
   if (item.pipe) out["pipe"] = true;
+  if (item.edge) out["edge"] = true;
   if (item.group != 0) out["group"] = item.group;
   if (!item.note.empty()) out["note"] = item.note;
   return out;
@@ -297,6 +298,8 @@ SketchItem readItem(const json& value, const std::set<std::uint64_t>& snapshots,
   item.locked = flag(value, "locked", where);
   item.pipe = flag(value, "pipe", where);
   if (item.pipe && item.kind != vision::FeatureKind::kLine) fault(where + ".pipe", "is true of a " + kind + ", only lines have it");
+  item.edge = flag(value, "edge", where);
+  if (item.edge && (item.pipe || item.kind != vision::FeatureKind::kLine)) fault(where + ".edge", "is true of a " + std::string(item.pipe ? "pipe" : kind) + ", only lines have it");
   if (value.contains("group")) item.group = idNumber(value["group"], where + ".group", true);
   if (value.contains("note")) item.note = text(value["note"], where + ".note");
   if (value.contains("colour")) {

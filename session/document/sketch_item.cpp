@@ -30,7 +30,7 @@ bool operator==(const SketchPick& a, const SketchPick& b) {
 
 bool operator==(const SketchItem& a, const SketchItem& b) {
   return a.id == b.id && a.kind == b.kind && a.name == b.name && a.colour == b.colour && a.hidden == b.hidden &&
-         a.locked == b.locked && a.pipe == b.pipe && a.group == b.group && a.note == b.note && a.picks == b.picks;
+         a.locked == b.locked && a.pipe == b.pipe && a.edge == b.edge && a.group == b.group && a.note == b.note && a.picks == b.picks;
 }
 
 const SketchPick* SketchItem::pick(SnapshotId snapshot, int vertex) const {
@@ -90,7 +90,7 @@ std::uint64_t hashOf(const SketchItem& item) {
   mix(hash, static_cast<std::uint64_t>(item.kind));
   mix(hash, std::hash<std::string>()(item.name));
   mix(hash, item.colour ? *item.colour + 1ULL : 0);
-  mix(hash, (item.hidden ? 1U : 0U) | (item.locked ? 2U : 0U) | (item.pipe ? 4U : 0U));
+  mix(hash, (item.hidden ? 1U : 0U) | (item.locked ? 2U : 0U) | (item.pipe ? 4U : 0U) | (item.edge ? 8U : 0U));
   mix(hash, item.group);
   mix(hash, std::hash<std::string>()(item.note));
   for (const auto& [snapshot, list] : item.picks) {

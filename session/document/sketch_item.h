@@ -49,6 +49,7 @@ struct SketchItem {
   bool hidden = false;
   bool locked = false;                         ///< Can be selected, not moved.
   bool pipe = false;                           ///< A line that is measured by a pipe's outlines: vertices 0, 1 on one, 2, 3 on the other.
+  bool edge = false;                           ///< A line whose ends are others in every picture: only what it runs along counts.
   std::uint64_t group = 0;                     ///< Items of one number are selected and moved together; 0: none.
   std::string note;                            ///< The operator's own words, shown below the name.
   std::map<SnapshotId, VertexPicks> picks;     ///< Each of size vertices().

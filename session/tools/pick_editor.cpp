@@ -106,7 +106,7 @@ std::string dragHint(const PickEdit& edit) {
 }
 
 SnapshotId constrainingSnapshot(const Document& document, const SketchItem& item, SnapshotId snapshot, int vertex) {
-  if (item.pipe) return {};
+  if (item.pipe || item.edge) return {};
   const SketchPick* own = item.pick(snapshot, vertex);
   const bool own_is_free = own != nullptr && own->state == PickState::kFree;
   SnapshotId best;
@@ -311,7 +311,7 @@ LiveMeasure liveMeasureOf(const Document& document, const SketchItem& item, cons
       live.length = measurement.feature->length();
       live.length_plus_minus = plusMinus95(measurement.feature->lengthSigma());
     }
-  } else if (!item.pipe) {
+  } else if (!item.pipe && !item.edge) {
     measureVertexAlone(live, document, item, handle.vertex);
   }
   const SnapshotPtr from = document.snapshot(constrainingSnapshot(document, item, handle.snapshot, handle.vertex));

@@ -40,7 +40,7 @@ void predict(ThirdView& out, const std::vector<vision::Sighting>& others, const 
 ThirdView thirdView(const Document& document, const SketchItem& item, int vertex, SnapshotId picture) {
   ThirdView out;
   const SnapshotPtr here = document.snapshot(picture);
-  if (!here || item.pipe) return out;
+  if (!here || item.pipe || item.edge) return out;
   const auto others = othersOf(document, item, vertex, picture);
   for (const auto& other : others) {
     auto curve = vision::epipolarCurve(*other.view, other.pixel, here->view);

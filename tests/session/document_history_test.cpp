@@ -7,6 +7,7 @@
 #include "session/commands/edit_history.h"
 #include "session/commands/sketch_commands.h"
 #include "session/commands/world_commands.h"
+#include "session/tools/pick_editor.h"
 #include "tests/session/synthetic_views.h"
 
 namespace longarm::session {
@@ -184,6 +185,38 @@ TEST(SketchCommands, CopyToOtherPicturesWhereItIsSeenButNotMeasuredBeforeItIsPla
   EXPECT_EQ(bench.document.items().size(), 1U);
 }
 
+TEST(SketchCommands, ALineWhoseEndsDifferIsMeasuredByWhatItRunsAlong) {
+  Bench bench;
+  SketchItem line = trueLine(bench, 1);
+  const Eigen::Vector3d a = bench.scene.a, b = a + 0.15 * bench.scene.left.X_WC.linear().col(1);   // across the baseline
+  for (int vertex = 0; vertex < 2; ++vertex) line.setPick({1}, vertex, {bench.scene.pixel(PaneSide::kLeft, vertex == 0 ? a : b), PickState::kFree});
+  // Other places of the same edge in the right picture.
+  line.setPick({2}, 0, {bench.scene.pixel(PaneSide::kRight, a + 0.3 * (b - a)), PickState::kReleased});
+  line.setPick({2}, 1, {bench.scene.pixel(PaneSide::kRight, a + 0.8 * (b - a)), PickState::kReleased});
+  bench.history.push(addItem(line));
+  bench.history.push(edgeItem(bench.document, {1}, true));
+  const auto& feature = bench.document.measurement({1}).feature;
+  ASSERT_TRUE(feature.has_value()) << bench.document.measurement({1}).reason;
+  EXPECT_LT((feature->vertices[0].xyz - a).norm(), 1e-6) << "the ends are those of the first picture";
+  EXPECT_LT((feature->vertices[1].xyz - b).norm(), 1e-6);
+  EXPECT_FALSE(constrainingSnapshot(bench.document, *bench.document.item({1}), {2}, 0).valid()) << "no curve holds its picks";
+  bench.history.undo();
+  const auto& matched = bench.document.measurement({1}).feature;
+  EXPECT_TRUE(!matched || (matched->vertices[0].xyz - a).norm() > 0.01) << "the ends do not correspond";
+  EXPECT_EQ(edgeItem(bench.document, {9}, true), nullptr);
+  // Along the baseline the planes coincide.
+  SketchItem flat = trueLine(bench, 2, "Line 2");
+  for (int vertex = 0; vertex < 2; ++vertex) {
+    const Eigen::Vector3d p = a + vertex * 0.2 * (bench.scene.right.X_WC.translation() - bench.scene.left.X_WC.translation()).normalized();
+    flat.setPick({1}, vertex, {bench.scene.pixel(PaneSide::kLeft, p), PickState::kFree});
+    flat.setPick({2}, vertex, {bench.scene.pixel(PaneSide::kRight, p), PickState::kReleased});
+  }
+  flat.edge = true;
+  bench.history.push(addItem(flat));
+  EXPECT_FALSE(bench.document.measurement({2}).feature.has_value());
+  EXPECT_NE(bench.document.measurement({2}).reason.find("baseline"), std::string::npos) << bench.document.measurement({2}).reason;
+}
+
 TEST(SketchCommands, DuplicateWithAnIdAndNameOfItsOwn) {
   Bench bench;
   bench.history.push(addItem(trueLine(bench, 1)));
@@ -222,6 +255,7 @@ class RandomEditor {
       case 5: return movePick("");
       case 6: return movePick("nudge");
       case 7: return renameItem(document, anyItem(), "name " + std::to_string(below(50)));
+      case 17: return edgeItem(document, anyItem(), below(2) == 0);
       case 8: return below(2) == 0 ? hideItem(document, anyItem(), below(2) == 0) : lockItem(document, anyItem(), below(2) == 0);
       case 9: return colourItem(document, anyItem(), static_cast<std::uint32_t>(below(1 << 24)));
       case 10: return below(2) == 0 ? duplicateItem(document, anyItem()) : moveItem(document, anyItem(), below(8));
