@@ -131,6 +131,28 @@ TEST_P(CanvasGesture, DragsAHandleAlongItsCurveAndWithControlOffIt) {
   EXPECT_LT((pickOf(id, kRight, 0) - before - aside).norm(), 1e-6);
 }
 
+// Other places of the same edge: no curve holds the handles of a line whose ends differ.
+TEST_P(CanvasGesture, DragsTheEndsOfAnEdgeToOtherPlacesOfIt) {
+  const Vector3d a = rig.scene.a, b = a + 0.2 * rig.scene.left.X_WC.linear().col(1);
+  rig.targeting().setTool(ToolKind::kLine);
+  for (const PaneSide side : kBoth) rig.drag(side, rig.seen(side, a), rig.seen(side, b));
+  ASSERT_EQ(rig.document().items().size(), 1U);
+  const FeatureId id = rig.only().id;
+  rig.targeting().select(id);
+  rig.targeting().setEdge(id, true);
+  const double places[2] = {0.4, 0.7};
+  for (int vertex = 0; vertex < 2; ++vertex) {
+    const Vector2d to = rig.seen(kRight, a + places[vertex] * (b - a));
+    rig.drag(kRight, pickOf(id, kRight, vertex), to);
+    EXPECT_LT((pickOf(id, kRight, vertex) - to).norm(), 0.3 + 1 / GetParam()) << "free of the curve";
+  }
+  const auto& feature = rig.measured().feature;
+  ASSERT_TRUE(feature) << rig.measured().reason;
+  const Vector3d along = (b - a).normalized(), off = feature->vertices[0].xyz - a;
+  EXPECT_LT((off - off.dot(along) * along).norm(), 0.004);
+  EXPECT_LT(std::acos(std::min(1.0, std::abs(feature->direction().dot(along)))), 0.1);
+}
+
 TEST_P(CanvasGesture, DragsAWholeFeatureAndEscTakesItBack) {
   const FeatureId id = add(1);
   const Vector2d a = pickOf(id, kLeft, 0), b = pickOf(id, kLeft, 1), by(12, -9 - 4 / GetParam());
