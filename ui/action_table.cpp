@@ -38,6 +38,7 @@ const std::vector<ActionSpec>& actionTable() {
       {I::kToolPlane, "Sketch", "Pla&ne", "tool-plane", "W", "Mark three corners of a flat face in both pictures", true},
       {I::kToolTriad, "Sketch", "&Triad (box)", "tool-triad", "X", "Mark a box's corner and the ends of its three edges in both pictures", true},
       {I::kToolMeasure, "Sketch", "&Measure", "tool-measure", "M", "Distance between two handles, or the angle at the second of three", true},
+      {I::kSnap, "Sketch", "S&nap to corners and edges", "", "Shift+N", "Handles snap by themselves, and Shift is held for none; else Shift is held to snap", true},
       {I::kAddToWorld, "Sketch", "Add to &world", "world-add", "Ctrl+B", "Make the selected box, plane, pipe or points a body that plans keep clear of"},
       {I::kAddKeepOut, "Sketch", "Add as &keep-out zone", "", "Ctrl+Shift+B", "Make the selected box, plane, pipe or points a zone that the arm and what it holds never enter"},
       {I::kAddWorkspace, "Sketch", "Add workspace bo&x", "", "", "Put a box around the arm that it does not leave; change its numbers in the list of bodies"},

@@ -16,7 +16,7 @@ namespace longarm::ui {
 
 enum class ActionId {
   kOpenPair, kOpenViews, kOpenSketch, kSaveSketch, kSaveSketchAs, kExportWorld, kQuit,
-  kUndo, kRedo, kDelete, kRename, kDuplicate, kCopyToPictures, kNote, kNumbers, kColour, kGroup, kUngroup, kHide, kLock, kEndsDiffer, kSelectAll, kCancel,
+  kUndo, kRedo, kDelete, kRename, kDuplicate, kCopyToPictures, kNote, kNumbers, kColour, kGroup, kUngroup, kHide, kLock, kEndsDiffer, kSnap, kSelectAll, kCancel,
   kToolSelect, kToolPoint, kToolLine, kToolPipe, kToolPlane, kToolTriad, kToolMeasure, kAddToWorld, kAddKeepOut, kAddWorkspace, kClearestView,
   kReregister,
   kTaskTarget, kTaskCalibrate,

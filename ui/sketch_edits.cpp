@@ -33,6 +33,7 @@ SketchEdits::SketchEdits(Workbench& bench, Actions& actions, QWidget* window)
           [this, tell] { tell(m_bench.world().addSelected(session::WorldRole::kKeepOut)); });
   connect(actions.at(ActionId::kAddWorkspace), &QAction::triggered, this, [this, tell] { tell(m_bench.world().addWorkspace()); });
   connect(actions.at(ActionId::kClearestView), &QAction::triggered, this, [this] { m_bench.showClearestView(); });
+  connect(actions.at(ActionId::kSnap), &QAction::toggled, this, [this](bool on) { m_bench.targeting().pictures()->setSnapping(on); });
   connect(actions.at(ActionId::kOwnLinks), &QAction::toggled, this, [this](bool on) { m_bench.targeting().setOwnLinksShown(on); });
   actions.at(ActionId::kOwnLinks)->setChecked(true);
   connect(&bench.targeting(), &TargetingController::featuresChanged, this, &SketchEdits::refresh);

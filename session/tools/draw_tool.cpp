@@ -380,7 +380,8 @@ std::string DrawTool::placingHint() const {
   if (constrained) {
     return "Slide " + vertexName(next->vertex) + where + " along its curve onto the same spot; Control leaves the curve.";
   }
-  return "Drag or click " + vertexName(next->vertex) + where + " onto the feature; Shift snaps to corners and edges, Esc ends.";
+  return "Drag or click " + vertexName(next->vertex) + where + " onto the feature; " +
+         (pictures() != nullptr && pictures()->snapping() ? "with Shift it does not snap, Esc ends." : "Shift snaps to corners and edges, Esc ends.");
 }
 
 }  // namespace longarm::session

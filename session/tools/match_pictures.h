@@ -3,6 +3,7 @@
 /// @file
 /// MatchPictures: snapshots as pictures in floats, made once, for snapping and matching.
 
+#include <atomic>
 #include <cstddef>
 #include <list>
 #include <memory>
@@ -20,6 +21,9 @@ class MatchPictures {
 
   /// Null for a null snapshot or one whose picture cannot be matched.
   std::shared_ptr<const vision::MatchPicture> of(const vision::SnapshotPtr& snapshot);
+  /// Whether handles snap to what is in them by themselves and Shift is held for none; else Shift is held to snap.
+  void setSnapping(bool on) { m_snapping = on; }
+  bool snapping() const { return m_snapping; }
 
  private:
   struct Entry {
@@ -27,6 +31,7 @@ class MatchPictures {
     std::shared_ptr<const vision::MatchPicture> picture;
   };
   std::size_t m_kept;
+  std::atomic<bool> m_snapping{false};
   std::mutex m_mutex;
   std::list<Entry> m_entries;              // Asked for last comes first.
 };

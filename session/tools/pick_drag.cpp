@@ -44,7 +44,7 @@ void PickDrag::beginStroke(const Document& document, const SketchItem& item, con
 
 Eigen::Vector2d PickDrag::snapped(int vertex, const Eigen::Vector2d& wanted, const Gesture& gesture,
                                   MatchPictures* pictures, std::optional<vision::SnapKind>* kind) const {
-  if (!gesture.modifiers.shift || pictures == nullptr) return wanted;
+  if (pictures == nullptr || gesture.modifiers.shift == pictures->snapping()) return wanted;
   const auto picture = pictures->of(m_editor->document().snapshot(m_editor->snapshot()));
   if (!picture) return wanted;
   const auto snap = m_editor->snapped(vertex, wanted, gesture.modifiers.control, *picture, snapRadius(gesture.tolerance_px));

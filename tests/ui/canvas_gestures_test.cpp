@@ -294,6 +294,14 @@ TEST_P(CanvasSnap, DrawsAHandleToACornerWithShiftOnly) {
   rig.targeting().undo();
   rig.drag(kLeft, {60, 60}, near, Qt::ShiftModifier);
   EXPECT_LT((rig.pick(kLeft) - corner).norm(), 0.15);
+  // The other way round where the operator wants it so.
+  rig.targeting().undo();
+  rig.targeting().pictures()->setSnapping(true);
+  rig.click(kLeft, near);
+  EXPECT_LT((rig.pick(kLeft) - corner).norm(), 0.15);
+  rig.targeting().undo();
+  rig.click(kLeft, near, Qt::ShiftModifier);
+  EXPECT_LT((rig.pick(kLeft) - near).norm(), 1e-6) << "held for none";
 }
 
 }  // namespace
