@@ -87,7 +87,7 @@ bool HealthController::counts(const vision::Snapshot& snapshot) const {
 }
 
 void HealthController::addMisses(const SketchItem& item, std::vector<MissSample>* out) const {
-  if (item.edge) return;                   // its picks are different places
+  if (item.pipe || item.edge) return;      // its picks are other places in every picture
   for (int vertex = 0; vertex < vision::vertexCount(item.kind); ++vertex) {
     std::vector<std::pair<SnapshotPtr, Eigen::Vector2d>> seen;
     for (const auto& [id, picks] : item.picks) {

@@ -199,6 +199,21 @@ TEST_F(Field, MissesOfReleasedPicksTellOfAKnockAndBlockTheMotion) {
   for (int i = 0; i < 4; ++i) mark(0, PickState::kReleased);
   EXPECT_EQ(health.of("head_left").level, HealthLevel::kGood);
   EXPECT_EQ(health.of("head_left").samples, 4);
+  // Outlines of a pipe and places along an edge are other ones in every picture: they tell nothing of the cameras.
+  for (const bool pipe : {true, false}) {
+    SketchItem item;
+    item.id = document.nextFeatureId();
+    item.kind = vision::FeatureKind::kLine;
+    item.pipe = pipe;
+    item.edge = !pipe;
+    item.name = document.freeName(item.kind, pipe);
+    for (int vertex = 0; vertex < item.vertices(); ++vertex) {
+      item.setPick(left, vertex, {{200.0 + 20 * vertex, 150.0 + 40 * vertex}, PickState::kFree});
+      item.setPick(right, vertex, {{190.0 + 20 * vertex, 190.0 + 40 * vertex}, PickState::kFree});
+    }
+    document.insertItem(document.items().size(), item);
+    EXPECT_EQ(health.of("head_left").samples, 4) << (pipe ? "pipe" : "edge");
+  }
   for (const auto& item : std::vector<SketchItem>(document.items())) document.removeItem(item.id);
   const FeatureId slid = mark(1, PickState::kConstrained);
   mark(1, PickState::kConstrained);

@@ -131,6 +131,25 @@ TEST_P(CanvasGesture, DragsAHandleAlongItsCurveAndWithControlOffIt) {
   EXPECT_LT((pickOf(id, kRight, 0) - before - aside).norm(), 1e-6);
 }
 
+TEST_P(CanvasGesture, DragsACopyIntoPlaceInOtherPictures) {
+  const FeatureId first = add(1);
+  rig.bench.history().push(session::addSnapshots(rig.document(), {tests::snapshotOf(3, rig.scene.left), tests::snapshotOf(4, rig.scene.right)}, kLeft));
+  const auto copied = rig.targeting().copyToPictures(first);
+  ASSERT_TRUE(copied.ok()) << copied.error().message;
+  ASSERT_EQ(rig.document().items().size(), 2U);
+  const FeatureId copy = rig.document().selection().primary;
+  ASSERT_NE(copy, first);
+  EXPECT_FALSE(rig.document().measurement(copy).feature);
+  for (const PaneSide side : kBoth) {
+    for (int vertex = 0; vertex < 2; ++vertex) {
+      const Vector2d from = pickOf(copy, side, vertex);
+      rig.drag(side, from, from + Vector2d(6 + 8 / GetParam(), 0));
+      EXPECT_TRUE(rig.document().item(copy)->pick(rig.document().paneSnapshotId(side), vertex)->placed());
+    }
+  }
+  EXPECT_TRUE(rig.document().measurement(copy).feature) << rig.document().measurement(copy).reason;
+}
+
 // Other places of the same edge: no curve holds the handles of a line whose ends differ.
 TEST_P(CanvasGesture, DragsTheEndsOfAnEdgeToOtherPlacesOfIt) {
   const Vector3d a = rig.scene.a, b = a + 0.2 * rig.scene.left.X_WC.linear().col(1);
