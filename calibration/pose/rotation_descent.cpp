@@ -14,18 +14,14 @@ typedef double Two __attribute__((vector_size(16)));
 
 void descendAnywhere(const RotationCost& cost, Rotations* rotations) { descendLanes<Two>(cost, rotations); }
 
-auto widest() {
-#ifdef LONGARM_WIDE_LANES
-  if (processorLanes() == ProcessorLanes::kEight) return descendAvx512;
-  if (processorLanes() == ProcessorLanes::kFour) return descendAvx2;
-#endif
-  return descendAnywhere;
-}
-
 }  // namespace
 
 void descendTogether(const RotationCost& cost, Rotations* rotations) {
-  static const auto descend = widest();
+#ifdef LONGARM_WIDE_LANES
+  static const auto descend = widestOf(descendAnywhere, descendAvx2, descendAvx512);
+#else
+  static const auto descend = descendAnywhere;
+#endif
   descend(cost, rotations);
 }
 

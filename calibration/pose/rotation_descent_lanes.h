@@ -7,10 +7,9 @@
 #include <cstring>
 
 #include "calibration/pose/rotation_descent.h"
+#include "core/processor.h"
 
 namespace longarm::calibration::internal {
-
-#define LONGARM_INLINE inline __attribute__((always_inline))
 
 // M r, and r^T M r + 2 g^T r.
 template <typename Lanes>

@@ -9,8 +9,7 @@
 #include <QTableWidget>
 #include <QToolButton>
 
-#include "tests/ui/window_fixture.h"
-#include "ui/simulated_operator.h"
+#include "tests/ui/played_window.h"
 
 namespace longarm {
 namespace {
@@ -21,16 +20,8 @@ using ui::SimulatedHand;
 using ui::Task;
 using vision::PaneSide;
 
-class CalibrateWithRobot : public tests::WindowFixture {
+class CalibrateWithRobot : public tests::PlayedWindow {
  protected:
-  void openScenario(const QString& scenario, const QSize& size = {1280, 800}) {
-    openWindow(QStringLiteral("dark"), size);
-    ui::RobotChoice choice;
-    choice.scenario = scenario;
-    bench->openRobot(choice);
-    ASSERT_TRUE(SimulatedHand::waitFor([this] { return bench->robot().linkUp(); }, 60)) << bench->robot().status().link_text;
-    op = std::make_unique<ui::SimulatedOperator>(*window, 0);
-  }
   Pose trueCamera(const std::string& camera) { return op->look()->links.at(bench->document().workcell()->camera(camera)->link); }
   // Draws a line over the pipe with the mouse; in the right picture where it is seen, off the curve.
   FeatureId markPipe() {
@@ -39,12 +30,8 @@ class CalibrateWithRobot : public tests::WindowFixture {
     return bench->document().items().empty() ? FeatureId() : bench->document().items().back().id;
   }
   ui::SimulatedOperator::Points pipeEnds() {
-    const auto now = op->look();
-    EXPECT_TRUE(now.ok()) << now.error().message;
-    const Pose X_WO = now->objects.at("pipe");
-    return {X_WO * Eigen::Vector3d(0, 0, -0.2), X_WO * Eigen::Vector3d(0, 0, 0.2)};
+    return pointsOn("pipe", {{0, 0, -0.2}, {0, 0, 0.2}}).value();
   }
-  void demand(const Status& status) { ASSERT_TRUE(status.ok()) << status.error().message; }
   // Marks the pipe some times; root mean square of how far its ends are missed.
   double missOfMarks(int count) {
     double squares = 0;
@@ -59,12 +46,10 @@ class CalibrateWithRobot : public tests::WindowFixture {
     if (!feature) return 1e9;
     return std::max((feature->vertices[0].xyz - ends[0]).norm(), (feature->vertices[1].xyz - ends[1]).norm());
   }
-
-  std::unique_ptr<ui::SimulatedOperator> op;
 };
 
 TEST_F(CalibrateWithRobot, ABoardHeldBeforeALiveCameraGivesItsTrueLens) {
-  openScenario(QStringLiteral("calibration_board"));
+  openScenario("calibration_board");
   window->tasks()->setTask(Task::kCalibrate);
   auto* panel = window->calibrate()->intrinsics();
   calibration::BoardSpec board;
@@ -117,8 +102,7 @@ int CalibrateWithRobot::clickCorners(const std::string& camera, int most) {
 }
 
 TEST_F(CalibrateWithRobot, AKnockedCameraIsNoticedBlocksTheMotionAndIsPutRightByMouseAlone) {
-  openScenario(QStringLiteral("grab_pipe"), {1920, 1080});
-  demand(op->waitForLink(60));
+  openScenario("grab_pipe", {1920, 1080});
   demand(op->aim([this] { return Result<ui::SimulatedOperator::Points>(pipeEnds()); }));
   demand(op->takePair());
   op->setTremble(0.5, 4);

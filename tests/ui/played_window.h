@@ -28,8 +28,8 @@ class PlayedWindow : public WindowFixture {
 
   static constexpr int kMostBytes = 60000;  // of a picture in the documentation
 
-  void openScenario(const std::string& scenario) {
-    openWindow(QStringLiteral("dark"), {1280, 800});
+  void openScenario(const std::string& scenario, const QSize& size = {1280, 800}) {
+    openWindow(QStringLiteral("dark"), size);
     ui::RobotChoice choice;
     choice.scenario = QString::fromStdString(scenario);
     bench->openRobot(choice);

@@ -5,11 +5,10 @@
 ///
 /// T is double, or a vector of doubles that holds as many pixels; what a comparison says comes back as T's mask.
 
+#include "core/processor.h"
 #include "vision/stereo/pair_kernel.h"
 
 namespace longarm::vision::internal::pair_lens {
-
-#define LONGARM_INLINE inline __attribute__((always_inline))
 
 // Ideal coordinates of a pixel, and the lens' derivative there.
 template <typename T>

@@ -11,18 +11,14 @@ int solveManyAnywhere(const CameraPair& c, int n, const double* pixels_a, const 
   return pair_lanes::solveMany<Two>(c, n, pixels_a, pixels_b, points);
 }
 
-auto widest() {
-#ifdef LONGARM_WIDE_LANES
-  if (processorLanes() == ProcessorLanes::kEight) return solveManyAvx512;
-  if (processorLanes() == ProcessorLanes::kFour) return solveManyAvx2;
-#endif
-  return solveManyAnywhere;
-}
-
 }  // namespace
 
 int solvePixelsOfMany(const CameraPair& pair, int n, const double* pixels_a, const double* pixels_b, double* points) {
-  static const auto solve = widest();
+#ifdef LONGARM_WIDE_LANES
+  static const auto solve = widestOf(solveManyAnywhere, solveManyAvx2, solveManyAvx512);
+#else
+  static const auto solve = solveManyAnywhere;
+#endif
   return solve(pair, n, pixels_a, pixels_b, points);
 }
 
