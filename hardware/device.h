@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "core/attitude.h"
 #include "core/base_motion.h"
 #include "core/latest_value.h"
 #include "core/motion.h"
@@ -70,6 +71,13 @@ class MobileBase : public virtual Device {
   /// A velocity for the next quarter of a second: the base stops by itself when nothing follows.  Called by
   /// MotionGate only.  kRefused unless kActive, as checkTwist().
   virtual Status drive(const BaseTwist& twist) = 0;
+};
+
+/// Tells which way is up.
+class Imu : public virtual Device {
+ public:
+  /// Newest attitude; null before the first.
+  virtual std::shared_ptr<const Attitude> attitude() const = 0;
 };
 
 /// One decoded-or-not picture with its time of exposure.

@@ -140,11 +140,17 @@ std::array<double, 3> readVector(const Json& value) {
   return {number(need(value, "x"), "x"), number(need(value, "y"), "y"), number(need(value, "z"), "z")};
 }
 
+std::array<double, 4> readQuaternion(const Json& q) {
+  return {number(need(q, "x"), "x"), number(need(q, "y"), "y"), number(need(q, "z"), "z"), number(need(q, "w"), "w")};
+}
+
 TwistMessage readTwist(const Json& value) {
   return {readVector(need(value, "linear")), readVector(need(value, "angular"))};
 }
 
 Json vectorJson(const std::array<double, 3>& v) { return {{"x", v[0]}, {"y", v[1]}, {"z", v[2]}}; }
+
+Json quaternionJson(const std::array<double, 4>& q) { return {{"x", q[0]}, {"y", q[1]}, {"z", q[2]}, {"w", q[3]}}; }
 
 Json twistJson(const TwistMessage& m) {
   return {{"linear", vectorJson(m.linear)}, {"angular", vectorJson(m.angular)}};
@@ -283,17 +289,21 @@ Body write(const CameraInfoMessage& m, Dialect dialect) {
 Body write(const Float64Message& m, Dialect) { return Body(Json{{"data", m.data}}); }
 Body write(const TwistMessage& m, Dialect) { return Body(twistJson(m)); }
 
+Body write(const ImuMessage& m, Dialect dialect) {
+  return Body(Json{{"header", writeHeader(m.header, dialect)},
+                   {"orientation", quaternionJson(m.orientation)},
+                   {"orientation_covariance", m.orientation_covariance},
+                   {"angular_velocity", vectorJson(m.angular_velocity)},
+                   {"linear_acceleration", vectorJson(m.linear_acceleration)}});
+}
+
 Body write(const OdometryMessage& m, Dialect dialect) {
   return Body(Json{{"header", writeHeader(m.header, dialect)},
                    {"child_frame_id", m.child_frame_id},
                    {"pose",
                     {{"pose",
                       {{"position", vectorJson(m.position)},
-                       {"orientation",
-                        {{"x", m.orientation[0]},
-                         {"y", m.orientation[1]},
-                         {"z", m.orientation[2]},
-                         {"w", m.orientation[3]}}}}}}},
+                       {"orientation", quaternionJson(m.orientation)}}}}},
                    {"twist", {{"twist", twistJson(m.twist)}}}});
 }
 
@@ -362,15 +372,22 @@ Status read(const Body& body, TwistMessage& message) {
   return guarded(body, message, [](const Json& value, TwistMessage& m) { m = readTwist(value); });
 }
 
+// What else it may hold (rates, accelerations) nobody here asks for.
+Status read(const Body& body, ImuMessage& message) {
+  return guarded(body, message, [](const Json& value, ImuMessage& m) {
+    m.header = readHeader(value);
+    m.orientation = readQuaternion(need(value, "orientation"));
+    if (const Json* covariance = find(value, "orientation_covariance")) m.orientation_covariance = matrix<9>(covariance, "orientation_covariance");
+  });
+}
+
 Status read(const Body& body, OdometryMessage& message) {
   return guarded(body, message, [](const Json& value, OdometryMessage& m) {
     m.header = readHeader(value);
     if (const Json* frame = find(value, "child_frame_id")) m.child_frame_id = text(*frame, "child_frame_id");
     const Json& pose = need(need(value, "pose"), "pose");
     m.position = readVector(need(pose, "position"));
-    const Json& q = need(pose, "orientation");
-    m.orientation = {number(need(q, "x"), "x"), number(need(q, "y"), "y"), number(need(q, "z"), "z"),
-                     number(need(q, "w"), "w")};
+    m.orientation = readQuaternion(need(pose, "orientation"));
     m.twist = readTwist(need(need(value, "twist"), "twist"));
   });
 }

@@ -17,6 +17,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "core/attitude.h"
 #include "core/base_motion.h"
 #include "core/motion.h"
 #include "core/result.h"
@@ -105,6 +106,14 @@ struct OdometryMessage {
   TwistMessage twist;                             ///< In the child frame.
 };
 
+struct ImuMessage {
+  static constexpr const char* kType = "sensor_msgs/Imu";
+  Header header;
+  std::array<double, 4> orientation{0, 0, 0, 1};             ///< Of the sensor in a frame with z up; x, y, z, w.
+  std::array<double, 9> orientation_covariance{};            ///< Row-major [rad^2]; first -1: no orientation is told.
+  std::array<double, 3> angular_velocity{}, linear_acceleration{};   ///< [rad/s], [m/s^2]
+};
+
 struct BoolMessage {
   static constexpr const char* kType = "std_msgs/Bool";
   bool data = false;
@@ -126,6 +135,7 @@ Body write(const CameraInfoMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const Float64Message& message, Dialect dialect = Dialect::kRos1);
 Body write(const TwistMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const OdometryMessage& message, Dialect dialect = Dialect::kRos1);
+Body write(const ImuMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const BoolMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const StringMessage& message, Dialect dialect = Dialect::kRos1);
 Body write(const EmptyMessage& message, Dialect dialect = Dialect::kRos1);
@@ -137,6 +147,7 @@ Status read(const Body& body, CameraInfoMessage& message);
 Status read(const Body& body, Float64Message& message);
 Status read(const Body& body, TwistMessage& message);
 Status read(const Body& body, OdometryMessage& message);
+Status read(const Body& body, ImuMessage& message);
 Status read(const Body& body, BoolMessage& message);
 Status read(const Body& body, StringMessage& message);
 Status read(const Body& body, EmptyMessage& message);
@@ -160,6 +171,10 @@ Result<BaseTwist> toTwist(const TwistMessage& message);
 OdometryMessage toMessage(const BaseState& state, double stamp_s);
 /// kInvalidInput as toTwist(), or for a quaternion that is none.  stamp_s is the header's.
 Result<BaseState> toBaseState(const OdometryMessage& message);
+/// Turned about z by nothing: only what is up counts.
+ImuMessage toMessage(const Attitude& attitude, double stamp_s, const std::string& frame);
+/// kInvalidInput when it tells no orientation, or its quaternion is none.  stamp_s is the header's.
+Result<Attitude> toAttitude(const ImuMessage& message);
 JointStateMessage toMessage(const JointState& state, double stamp_s);
 /// kInvalidInput when a position is missing or not finite, or a joint is named twice.  stamp_s is the header's.
 Result<JointState> toJointState(const JointStateMessage& message);

@@ -114,6 +114,28 @@ Result<BaseState> toBaseState(const OdometryMessage& message) {
   return BaseState{message.header.stamp_s, p[0], p[1], yaw, *twist};
 }
 
+ImuMessage toMessage(const Attitude& attitude, double stamp_s, const std::string& frame) {
+  ImuMessage out;
+  out.header.stamp_s = stamp_s;
+  out.header.frame_id = frame;
+  const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(attitude.up, Eigen::Vector3d::UnitZ());
+  out.orientation = {q.x(), q.y(), q.z(), q.w()};
+  return out;
+}
+
+Result<Attitude> toAttitude(const ImuMessage& message) {
+  if (message.orientation_covariance[0] == -1) {
+    return Error{ErrorCode::kInvalidInput, "attitude: the sensor tells no orientation (its first covariance is -1)"};
+  }
+  const auto& q = message.orientation;
+  const Eigen::Quaterniond orientation(q[3], q[0], q[1], q[2]);
+  const double norm = orientation.norm();
+  if (!(std::abs(norm - 1) < 0.01)) {
+    return Error{ErrorCode::kInvalidInput, "attitude: its quaternion has length " + formatNumber(norm) + "; expected 1"};
+  }
+  return Attitude{message.header.stamp_s, orientation.normalized().conjugate() * Eigen::Vector3d::UnitZ()};
+}
+
 JointStateMessage toMessage(const JointState& state, double stamp_s) {
   JointStateMessage out;
   out.header.stamp_s = stamp_s;

@@ -22,7 +22,8 @@ class ApproachFromSide final : public FeatureMacro {
              {"gap", "m", 0, 0, 0.3, "Left between the tool point and the line."},
              {"radius", "m", 0.02, 0.001, 0.045, "Of what the line runs through, as an obstacle."},
              approachSpeedParameter()},
-            0.02};
+            0.02,
+            true};
   }
 
  protected:
@@ -38,7 +39,7 @@ class ApproachFromSide final : public FeatureMacro {
     setup.job.touchable.push_back(body.name);
     setup.job.open_gripper = true;
     TaskPart part;
-    for (const auto& side : sides(*line, setup.reach.shoulder)) {
+    for (const auto& side : sides(*line, setup.reach.shoulder, setup.run.up())) {
       for (const double angle : anglesAround(kMost, kStep)) {
         const Eigen::Vector3d z = Eigen::AngleAxisd(angle, line->direction) * side;
         for (const double sign : {1.0, -1.0}) part.tasks.push_back(taskFrom(setup, *line, z, sign, angle));
@@ -50,12 +51,12 @@ class ApproachFromSide final : public FeatureMacro {
 
  private:
   // Level directions to come along, square to the line: the arm's side, or both sides of a line that points at the arm.
-  static std::vector<Eigen::Vector3d> sides(const AxisLine& line, const Eigen::Vector3d& shoulder) {
+  static std::vector<Eigen::Vector3d> sides(const AxisLine& line, const Eigen::Vector3d& shoulder, const Eigen::Vector3d& up) {
     Eigen::Vector3d view = line.middle() - shoulder;
-    view.z() = 0;
+    view -= view.dot(up) * up;
     const Eigen::Vector3d square = view - view.dot(line.direction) * line.direction;
     if (square.norm() > 0.3 * view.norm() && square.norm() > 1e-3) return {square.normalized()};
-    Eigen::Vector3d across = line.direction.cross(Eigen::Vector3d::UnitZ());
+    Eigen::Vector3d across = line.direction.cross(up);
     if (across.norm() < 1e-3) across = Eigen::Vector3d::UnitY();
     return {across.normalized(), -across.normalized()};
   }

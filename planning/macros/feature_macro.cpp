@@ -1,8 +1,10 @@
 #include "planning/macros/feature_macro.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
+#include "core/text.h"
 #include "planning/macros/accuracy.h"
 #include "planning/macros/job_reach.h"
 #include "planning/motion/timed_motion.h"
@@ -22,6 +24,14 @@ Eigen::Vector3d meanOf(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& p : points) sum += p;
   return sum / static_cast<double>(points.size());
+}
+
+// Where it is not the base's z, what is meant by "above" should be seen.
+void noteUp(PlanningRun& run) {
+  constexpr double kTold_deg = 0.5;
+  const double off = std::acos(std::clamp(run.up().z(), -1.0, 1.0)) * 180 / M_PI;
+  if (off < kTold_deg) return;
+  run.plan().notes.push_back("Up is what the robot's attitude sensor says: " + formatFixed(off, 1) + " deg off the base's z.");
 }
 
 void sortParts(ToolJob& job) {
@@ -71,6 +81,7 @@ Plan FeatureMacro::run(const PlanContext& context, const vision::Feature& featur
   if (!run.begin()) return run.plan();
   auto points = rooted(feature, *about.takes, run.model(), context.start);
   if (!points) return run.fail(PlanStatus::kBadFeature, about.title + ": " + points.error().message + ".");
+  if (about.uses_up && context.up) noteUp(run);
   MacroSetup setup{run, *arguments, *std::move(points)};
   setup.X_RT = run.model().forward(context.start, run.model().linkIndex(run.workcell().arm.tip_link).valueOr(run.model().rootLink()));
   setup.reach = reachOf(run.workcell(), context.start);
@@ -98,7 +109,7 @@ Plan FeatureMacro::planJob(MacroSetup& setup) const {
   const ArmSpace space(run.workcell(), *world, run.configuration());
   if (setup.arm_stays) {
     appendStage(run.plan(), "aim", false, standStill(run.workcell().armJointNames(), run.start(), 0.1));
-    run.plan().min_clearance = leastClearance(space, run.plan().trajectory, 0, 0.1);
+    measureClearance(space, run.plan(), 0, 0.1);
     run.plan().goal = setup.X_RT;
     return run.finish();
   }

@@ -11,7 +11,7 @@ namespace longarm::planning {
 namespace {
 
 constexpr double kSpare = 0.004;         // on either side of the box between the open fingers [m]
-constexpr double kFromBelow = -0.3;      // z of a face's normal below which nothing comes from there
+constexpr double kFromBelow = -0.3;      // upward part of a face's normal below which nothing comes from there
 
 class GraspByFaces final : public FeatureMacro {
  public:
@@ -21,7 +21,8 @@ class GraspByFaces final : public FeatureMacro {
             {standOffParameter(0.10),
              {"depth", "m", 0.025, 0, 0.1, "How far the tool point goes beyond the face it comes through."},
              approachSpeedParameter()},
-            0.008};
+            0.008,
+            true};
   }
 
  protected:
@@ -35,7 +36,7 @@ class GraspByFaces final : public FeatureMacro {
     for (int axis = 0; axis < 3; ++axis) {
       if (box->size[axis] > widest) continue;
       for (int face = 0; face < 6; ++face) {
-        if (face / 2 == axis || box->normal(face).z() < kFromBelow) continue;
+        if (face / 2 == axis || box->normal(face).dot(setup.run.up()) < kFromBelow) continue;
         for (const double sign : {1.0, -1.0}) part.tasks.push_back(taskThrough(setup, *box, axis, face, sign));
       }
     }
@@ -65,7 +66,7 @@ class GraspByFaces final : public FeatureMacro {
     task.stages.push_back({"approach", path, setup.arguments["approach_speed"], true, true});
     // From above first, then through the faces that look at the arm, then the others.
     const double facing = box.normal(face).dot((setup.reach.shoulder - box.X_RO.translation()).normalized());
-    task.preference = box.normal(face).z() > 0.7 ? 0 : facing > 0.3 ? 1 : 2;
+    task.preference = box.normal(face).dot(setup.run.up()) > 0.7 ? 0 : facing > 0.3 ? 1 : 2;
     return task;
   }
 };

@@ -38,7 +38,8 @@ class LookAt final : public FeatureMacro {
             vision::FeatureKind::kPoint,
             {{"stand_off", "m", 0.35, 0.1, 2, "Distance of the arm's camera from the point."},
              {"pan_tilt", "choice", m_arm ? 0.0 : 1.0, 0, 1, "1: turn the first pan-tilt and leave the arm where it is; 0: move the arm's camera.", {"arm", "pan-tilt"}}},
-            0.05};
+            0.05,
+            true};
   }
 
  protected:
@@ -58,7 +59,7 @@ class LookAt final : public FeatureMacro {
     const Eigen::Vector3d view = p - X_RC.translation();
     TaskPart part;
     for (const auto& direction : directionsAround(view.norm() > 1e-3 ? view : Eigen::Vector3d(X_RC.linear().col(2)), kMostTilt)) {
-      const Eigen::Vector3d right = direction.z.cross(Eigen::Vector3d::UnitZ());       // of a level picture
+      const Eigen::Vector3d right = direction.z.cross(setup.run.up());       // of a level picture
       const Eigen::Matrix3d R = toolRotation(direction.z, right.norm() > 0.1 ? right : Eigen::Vector3d(X_RC.linear().col(0)));
       for (const double roll : anglesAround(M_PI, kRollStep)) {
         ToolTask task;

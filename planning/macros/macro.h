@@ -33,6 +33,7 @@ struct MacroInfo {
   /// How well the feature must be known, 95 % [m]: up to it "go", up to three times it "ask", beyond "no_go".  Grab
   /// Pipe judges across its fingers, by the gripper and radius at hand.  0: takes no feature.
   double accuracy_need = 0;
+  bool uses_up = false;                           ///< Goes by PlanContext::up: "above", "level", "upright".
 };
 
 class Macro {

@@ -22,20 +22,23 @@ class PlaceDisruptor final : public FeatureMacro {
              {"elevation", "rad", 0, -1.2, 1.2, "Of the aim: positive aims upwards."},
              {"approach", "m", 0.10, 0.02, 0.5, "Length of the straight approach."},
              approachSpeedParameter()},
-            0.01};
+            0.01,
+            true};
   }
 
  protected:
   Status describe(MacroSetup& setup) const override {
     const auto line = axisLineFrom(setup.feature);
     if (!line) return line.error();
-    if (std::abs(line->direction.z()) > kSteepest) {
-      return {ErrorCode::kDegenerate, "the line slopes by " + formatFixed(std::asin(std::abs(line->direction.z())) * 180 / M_PI, 0) +
+    const Eigen::Vector3d vertical = setup.run.up();
+    const double slope = std::abs(line->direction.dot(vertical));
+    if (slope > kSteepest) {
+      return {ErrorCode::kDegenerate, "the line slopes by " + formatFixed(std::asin(slope) * 180 / M_PI, 0) +
                                           " deg; the lower edge of a package lies within 30 deg of level"};
     }
-    Eigen::Vector3d outward = line->direction.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Vector3d outward = line->direction.cross(vertical).normalized();
     if (outward.dot(setup.reach.shoulder - line->middle()) < 0) outward = -outward;
-    const Eigen::Vector3d up = (line->direction.cross(outward).z() > 0 ? 1 : -1) * line->direction.cross(outward);
+    const Eigen::Vector3d up = (line->direction.cross(outward).dot(vertical) > 0 ? 1 : -1) * line->direction.cross(outward);
     const Eigen::Vector3d target = line->middle() + setup.arguments["height"] * up;
     addFront(setup, *line, outward, up);
     const double e = setup.arguments["elevation"];

@@ -21,12 +21,13 @@ class PlaceHere final : public FeatureMacro {
              {"gap", "m", 0.006, 0, 0.1, "Left between the point and what is held when it is let go."},
              {"max_lean", "rad", 0, 0, 1.5708, "How far it may be leant away from how it is held now when it must."},
              approachSpeedParameter(0.03)},
-            0.01};
+            0.01,
+            true};
   }
 
  protected:
   Status describe(MacroSetup& setup) const override {
-    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up = setup.run.up();
     const double below = heldBelow(setup.run.context(), -up);
     const Eigen::Vector3d end = setup.feature.points[0] + (below + setup.arguments["gap"]) * up;
     TaskPart part;

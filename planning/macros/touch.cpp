@@ -19,7 +19,8 @@ class Touch final : public FeatureMacro {
              {"gap", "m", 0, -0.02, 0.2, "Left between the tool point and the point; negative presses."},
              {"from", "choice", 0, 0, 2, "Side to come from: 0 the arm's, 1 above, 2 level from the arm's side.", {"arm's side", "above", "level"}},
              approachSpeedParameter(0.02)},
-            0.006};
+            0.006,
+            true};
   }
 
  protected:
@@ -46,8 +47,9 @@ class Touch final : public FeatureMacro {
   static Eigen::Vector3d wanted(const MacroSetup& setup, const Eigen::Vector3d& p) {
     Eigen::Vector3d reach = p - setup.reach.shoulder;
     const int from = setup.arguments.choice("from");
-    if (from == 2) reach.z() = 0;
-    if (from == 1 || reach.norm() < 1e-3) return -Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up = setup.run.up();
+    if (from == 2) reach -= reach.dot(up) * up;
+    if (from == 1 || reach.norm() < 1e-3) return -up;
     return reach.normalized();
   }
 

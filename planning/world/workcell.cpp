@@ -33,6 +33,7 @@ class WorkcellReader {
     readArm(top);
     readGripper(top);
     readBase(top);
+    readImu(top);
     readPanTilts(top);
     readCameras(top);
     readBackend(top);
@@ -184,6 +185,13 @@ class WorkcellReader {
     limits.sideways = base->flagOr("sideways", false);
     base->finish();
     m_cell.base = limits;
+  }
+
+  void readImu(YamlSection& top) {
+    auto imu = top.sectionOr("imu");
+    if (!imu || m_findings.error) return;
+    m_cell.imu = ImuSpec{linkName(*imu, "link"), imu->textOr("topic", "")};
+    imu->finish();
   }
 
   void readPanTilts(YamlSection& top) {

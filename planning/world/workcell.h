@@ -28,6 +28,12 @@ struct GripperSpec {
   std::string device;                    ///< Device name of the back end.
 };
 
+/// An attitude sensor: which way is up.
+struct ImuSpec {
+  std::string link;                      ///< Whose frame its orientation is of.
+  std::string topic;                     ///< Empty: the driver's usual one.
+};
+
 struct PanTiltSpec {
   std::string name;
   std::string pan_joint, tilt_joint;
@@ -62,6 +68,7 @@ struct Workcell {
   MotionLimits arm_limits;               ///< In the order of the arm's joints; for planning and the gate.
   std::optional<GripperSpec> gripper;
   std::optional<BaseLimits> base;  ///< A robot that drives; its root link moves with it.
+  std::optional<ImuSpec> imu;            ///< Tells which way is up; without one the root's z is taken for it.
   std::vector<PanTiltSpec> pan_tilts;
   std::vector<CameraSpec> cameras;
   BackendSpec backend;

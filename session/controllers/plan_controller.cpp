@@ -102,6 +102,9 @@ std::vector<MacroRow> PlanController::macros() const {
     row.reason = whyNot(info);
     row.enabled = row.reason.isEmpty();
     row.parameters = info.parameters;
+    if (info.uses_up && !(m_up && m_up())) {
+      row.advice = tr("Above means along the base's own z: the robot does not tell which way is up (imu in its workcell file).");
+    }
     judge(info, row);
     rows.push_back(std::move(row));
   }
@@ -198,6 +201,7 @@ std::optional<planning::PlanContext> PlanController::contextWithout(FeatureId ta
     context.objects.push_back(m_held->held()->at(*workcell, context.start));
     context.held = {m_held->held()->body.name};
   }
+  if (m_up) context.up = m_up();
   context.seed = m_seed;
   context.budget_s = m_budget_s;
   return context;

@@ -31,6 +31,7 @@ struct MacroRow {
   double accuracy_need_m = 0;              ///< Of the feature, 95 %; 0: takes none.
   QString go;                              ///< "go", "ask", "no_go" for the selected feature; empty when it is not measured.
   QString accuracy;                        ///< Why it is not "go".
+  QString advice;                          ///< Something to know before it is planned; empty: nothing.
   std::vector<planning::MacroParameter> parameters;
 };
 
@@ -58,6 +59,8 @@ class PlanController final : public QObject {
 
   /// Newest joints of the robot; null while unknown.  Plans start there.
   void setJointSource(std::function<std::shared_ptr<const JointState>()> source) { m_joints = std::move(source); }
+  /// Which way is up in the root frame, where the robot tells it.
+  void setUpSource(std::function<std::optional<Eigen::Vector3d>()> source) { m_up = std::move(source); }
   /// What is held is planned with; borrowed, null: nothing is known of it.
   void setHeld(const HeldController* held) { m_held = held; }
   void setSeed(unsigned seed) { m_seed = seed; }
@@ -155,6 +158,7 @@ class PlanController final : public QObject {
   std::shared_ptr<const MacroList> m_macros;
   std::vector<planning::RecordedMotion> m_recorded;
   std::function<std::shared_ptr<const JointState>()> m_joints;
+  std::function<std::optional<Eigen::Vector3d>()> m_up;
   const HeldController* m_held = nullptr;
   State m_state = State::kIdle;
   CancelToken m_cancel;

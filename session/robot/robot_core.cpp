@@ -14,6 +14,7 @@ constexpr unsigned kUpkeepTicks = 5;    // Upkeep at a fifth of the motion rate:
 constexpr double kAliveAhead_s = 0.15;  // A motion thread that hangs for longer ends the heartbeat.
 constexpr double kStart_s = 30;         // The virtual robot says its address long before on a machine that is not busy.
 constexpr double kLost_s = 1.0;         // Joint states missing for longer: the link counts as lost.
+constexpr double kOldAttitude_s = 1.0;  // An attitude older than this is not known any more.
 constexpr double kStill = 0.02;         // Slower than this is standing still [rad/s or m/s].
 // The gate's own cap on tool speed, beyond the planner's at twice its speed.
 constexpr double kToolSpeedFactor = 2.1;
@@ -143,6 +144,7 @@ std::vector<hardware::Device*> RobotCore::allDevices() const {
   if (m_devices.arm) out.push_back(m_devices.arm.get());
   if (m_devices.base) out.push_back(m_devices.base.get());
   if (m_devices.gripper) out.push_back(m_devices.gripper.get());
+  if (m_devices.imu) out.push_back(m_devices.imu.get());
   for (const auto& [name, device] : m_devices.pan_tilts) out.push_back(device.get());
   for (const auto& [name, device] : m_devices.cameras) out.push_back(device.get());
   return out;
@@ -169,6 +171,7 @@ void RobotCore::upkeep() {
     if (device.state() == hardware::DeviceState::kIdle && !device.activate()) return;
   };
   if (m_devices.gripper) activate(*m_devices.gripper);
+  if (m_devices.imu) activate(*m_devices.imu);
   for (const auto& [name, device] : m_devices.pan_tilts) activate(*device);
   std::lock_guard<std::mutex> lock(m_mutex);
   for (const auto& [name, device] : m_devices.cameras) {
@@ -238,6 +241,17 @@ LinkReport RobotCore::link() const {
     report.text = "connected";
   }
   return report;
+}
+
+std::optional<Eigen::Vector3d> RobotCore::up() const {
+  const auto attitude = m_devices.imu ? m_devices.imu->attitude() : nullptr;
+  if (!attitude || !m_workcell.imu || m_clock.now_s() - attitude->stamp_s > kOldAttitude_s) return std::nullopt;
+  const auto joints = m_devices.arm->jointState();
+  const auto link = m_workcell.model->linkIndex(m_workcell.imu->link);
+  if (!joints || !link) return std::nullopt;
+  Eigen::VectorXd q = m_workcell.model->neutral();
+  m_workcell.model->assign(*joints, q);
+  return (m_workcell.model->forward(q, *link).linear() * attitude->up).normalized();
 }
 
 std::vector<std::string> RobotCore::faults() const {

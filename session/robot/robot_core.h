@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ class RobotCore {
 
   LinkReport link() const;
   std::vector<std::string> faults() const;
+  /// As RuntimeStatus::up.
+  std::optional<Eigen::Vector3d> up() const;
   /// Fills what only gate and devices know: gate, moving, stop_confirmed, tracking.
   void describeMotion(RuntimeStatus& status) const;
 

@@ -193,6 +193,7 @@ RuntimeStatus RobotRuntime::status() const {
   if (core->devices().base) {
     if (const auto odometry = core->devices().base->odometry()) out.base = *odometry;
   }
+  out.up = core->up();
   out.faults = core->faults();
   core->describeMotion(out);
   return out;
@@ -248,6 +249,12 @@ Status RobotRuntime::load(const Trajectory& trajectory, double at_s) {
 
 void RobotRuntime::unload() {
   if (const auto core = m_impl->current()) core->loop().unload();
+}
+
+Status RobotRuntime::confine(double low_s, double high_s) {
+  const auto core = m_impl->current();
+  if (!core) return Impl::noRobot();
+  return core->loop().confine(low_s, high_s);
 }
 
 Status RobotRuntime::play(const PlayOrder& order) {

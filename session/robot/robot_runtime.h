@@ -52,6 +52,7 @@ struct DeviceSet {
   std::shared_ptr<hardware::RobotArm> arm;
   std::shared_ptr<hardware::MobileBase> base;
   std::shared_ptr<hardware::Gripper> gripper;
+  std::shared_ptr<hardware::Imu> imu;
   std::map<std::string, std::shared_ptr<hardware::PanTilt>> pan_tilts;   ///< By PanTiltSpec::name.
   std::map<std::string, std::shared_ptr<hardware::Camera>> cameras;      ///< By CameraSpec::name.
   /// Heartbeats go out while the clock is below this; the motion thread keeps it ahead while all is well [s].
@@ -101,6 +102,7 @@ struct RuntimeStatus {
   bool driving = false;                            ///< A drive is held, or the base still moves by one.
   std::string drive_notice;                        ///< Why the last drive ended by itself.
   std::optional<BaseState> base;                   ///< Newest odometry; empty: none, or no base.
+  std::optional<Eigen::Vector3d> up;               ///< Unit, against gravity, in the root frame; empty: not told, or long ago.
   bool moving = false;                             ///< The commanded velocity is not zero.
   bool stop_confirmed = false;                     ///< STOP is latched and the measured joints stand still.
   double tracking_error = 0;                       ///< Largest |commanded - measured| [rad or m].
@@ -154,6 +156,8 @@ class RobotRuntime {
   /// @param at_s  Where on it the arm stands [s].
   Status load(const Trajectory& trajectory, double at_s = 0);
   void unload();
+  /// As Player::confine().
+  Status confine(double low_s, double high_s);
   /// Towards the end (or the start, at negative speed).  kStale as load(), kRefused when STOP is latched, the link is
   /// not up, or nothing is loaded.
   Status play(const PlayOrder& order = {});

@@ -6,6 +6,7 @@
 #include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
+#include "hardware/drivers/rosbridge/rosbridge_imu.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
 
 namespace longarm::session {
@@ -76,6 +77,10 @@ Result<DeviceSet> makeRosbridgeDevices(const planning::Workcell& workcell, const
   set.arm = std::make_shared<hardware::RosbridgeArm>("arm", robot, topics);
   if (workcell.base)
     set.base = std::make_shared<hardware::RosbridgeBase>("base", robot, *workcell.base, topics);
+  if (workcell.imu) {
+    const auto& topic = workcell.imu->topic;
+    set.imu = std::make_shared<hardware::RosbridgeImu>("imu", robot, topic.empty() ? topics.imu() : topic);
+  }
   if (workcell.gripper) {
     const auto& spec = *workcell.gripper;
     set.gripper = std::make_shared<hardware::RosbridgeGripper>(

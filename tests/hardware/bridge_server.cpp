@@ -55,6 +55,7 @@ BridgeServer::BridgeServer(BridgeOptions options)
   m_gripper = std::make_unique<SimulatedGripper>("robot gripper", 0.0, 0.05, 0.1, m_clock);
   m_pan_tilt = std::make_unique<SimulatedPanTilt>("robot head", 1.5, 1.0, m_clock);
   m_base = std::make_unique<SimulatedBase>("base", BaseLimits(), m_clock);
+  m_imu = std::make_unique<SimulatedImu>("imu", m_clock);
   (void)m_arm->open();
   for (Device* device : {static_cast<Device*>(m_gripper.get()), static_cast<Device*>(m_pan_tilt.get()),
                          static_cast<Device*>(m_base.get())}) {
@@ -141,6 +142,11 @@ void BridgeServer::publishAll() {
   if (wants("/joint_states")) reply(rosbridge::publish("/joint_states", jointStates(), m_options.dialect));
   if (wants("/gripper_controller/holding")) {
     reply(rosbridge::publish("/gripper_controller/holding", rosbridge::BoolMessage{m_gripper->holding()}));
+  }
+  if (wants("/imu/data")) {
+    const Attitude attitude = *m_imu->attitude();
+    reply(rosbridge::publish("/imu/data", rosbridge::toMessage(attitude, attitude.stamp_s + m_options.clock_ahead_s, "imu_link"),
+                             m_options.dialect));
   }
   if (wants("/odom")) {
     const BaseState state = *m_base->odometry();

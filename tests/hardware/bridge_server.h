@@ -16,6 +16,7 @@
 #include "hardware/sim/simulated_arm.h"
 #include "hardware/sim/simulated_base.h"
 #include "hardware/sim/simulated_gripper.h"
+#include "hardware/sim/simulated_imu.h"
 #include "hardware/sim/simulated_pan_tilt.h"
 
 class QThread;
@@ -49,6 +50,7 @@ class BridgeServer {
   SimulatedGripper& gripper() { return *m_gripper; }
   SimulatedPanTilt& panTilt() { return *m_pan_tilt; }
   SimulatedBase& base() { return *m_base; }
+  SimulatedImu& imu() { return *m_imu; }
 
   std::vector<Received> received() const;
   /// How many publications of a topic came, and the newest of them.
@@ -85,6 +87,7 @@ class BridgeServer {
   std::unique_ptr<SimulatedGripper> m_gripper;
   std::unique_ptr<SimulatedPanTilt> m_pan_tilt;
   std::unique_ptr<SimulatedBase> m_base;
+  std::unique_ptr<SimulatedImu> m_imu;
   std::atomic<int> m_clients{0};
   std::atomic<bool> m_quiet{false};
   mutable std::mutex m_mutex;            // guards what follows

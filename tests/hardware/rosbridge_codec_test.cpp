@@ -171,6 +171,18 @@ TEST(RosbridgeMessages, AllTypesSurviveBothDialectsAndBothForms) {
       broken.orientation = {0, 0, 0, 0};
       EXPECT_EQ(toBaseState(broken).error().code, ErrorCode::kInvalidInput);
 
+      const Attitude attitude{7.5, Eigen::Vector3d(0.3, -0.2, 0.9).normalized()};
+      const auto up = toAttitude(throughTheWire(toMessage(attitude, 7.5, "imu_link"), dialect, binary));
+      ASSERT_TRUE(up.ok()) << up.error().message;
+      EXPECT_LT((up->up - attitude.up).norm(), 1e-12);
+      EXPECT_NEAR(up->stamp_s, 7.5, 1e-6);
+      ImuMessage silent = toMessage(attitude, 1, "imu_link");
+      silent.orientation_covariance[0] = -1;
+      EXPECT_EQ(toAttitude(silent).error().code, ErrorCode::kInvalidInput) << "REP 145: no orientation";
+      silent = toMessage(attitude, 1, "imu_link");
+      silent.orientation = {0, 0, 0, 0};
+      EXPECT_EQ(toAttitude(silent).error().code, ErrorCode::kInvalidInput);
+
       EXPECT_EQ(throughTheWire(Float64Message{-1.0 / 3}, dialect, binary).data, -1.0 / 3);
       EXPECT_TRUE(throughTheWire(BoolMessage{true}, dialect, binary).data);
       EXPECT_EQ(throughTheWire(StringMessage{"{\"a\": \"ü\"}"}, dialect, binary).data, "{\"a\": \"ü\"}");

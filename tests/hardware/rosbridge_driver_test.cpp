@@ -165,6 +165,19 @@ TEST(RosbridgeDriver, TheBaseDrivesAndTellsItsOdometryOnTheConsolesClock) {
       << "idle until it is activated again";
 }
 
+TEST(RosbridgeDriver, TheAttitudeSensorTellsWhichWayIsUpOnTheConsolesClock) {
+  RosbridgeRig rig;
+  rig.openAndActivate();
+  EXPECT_EQ(rig.imu->attitude(), nullptr);
+  ASSERT_TRUE(rig.imu->open().ok());
+  const Eigen::Vector3d up = Eigen::Vector3d(0.1, -0.2, 1).normalized();
+  rig.server.imu().tilt(up);
+  ASSERT_TRUE(eventually([&] { return rig.imu->attitude() && (rig.imu->attitude()->up - up).norm() < 1e-9; }));
+  EXPECT_NEAR(rig.imu->attitude()->stamp_s, rig.steady.now_s(), 2) << "not on the robot's clock, 5000 s ahead";
+  rig.imu->close();
+  EXPECT_TRUE(eventually([&] { return !rig.server.subscribed("/imu/data"); }));
+}
+
 TEST(RosbridgeDriver, TheBaseUsesTheTopicsOfTheWorkcell) {
   RigOptions options;
   options.topics = {{"/cmd_vel", "/tracks/velocity"}, {"/odom", "/tracks/odometry"}};

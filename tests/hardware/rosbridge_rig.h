@@ -14,6 +14,7 @@
 #include "hardware/drivers/rosbridge/rosbridge_base.h"
 #include "hardware/drivers/rosbridge/rosbridge_camera.h"
 #include "hardware/drivers/rosbridge/rosbridge_gripper.h"
+#include "hardware/drivers/rosbridge/rosbridge_imu.h"
 #include "hardware/drivers/rosbridge/rosbridge_pan_tilt.h"
 #include "hardware/fault_proxy/fault_proxy.h"
 #include "tests/hardware/bridge_server.h"
@@ -48,6 +49,7 @@ class RosbridgeRig {
     head = std::make_shared<RosbridgePanTilt>(
         "head", robot, PanTiltSettings{{"pan", -1.5, 1.5}, {"tilt", -1.5, 1.5}}, topics);
     base = std::make_shared<RosbridgeBase>("base", robot, BaseLimits(), topics);
+    imu = std::make_shared<RosbridgeImu>("imu", robot, topics.imu());
     camera = std::make_shared<RosbridgeCamera>("head_left", robot, CameraSettings{}, topics);
   }
 
@@ -93,6 +95,7 @@ class RosbridgeRig {
   std::shared_ptr<RosbridgePanTilt> head;
   std::shared_ptr<RosbridgeCamera> camera;
   std::shared_ptr<RosbridgeBase> base;
+  std::shared_ptr<RosbridgeImu> imu;     // opened by who wants it
 };
 
 }  // namespace longarm::hardware::tests

@@ -52,6 +52,7 @@ TEST_F(WorkcellTest, NeedsOnlyARobotATipAndAnAcceleration) {
   EXPECT_DOUBLE_EQ(cell->arm_limits.max_acceleration[0], 4);
   EXPECT_DOUBLE_EQ(cell->arm_limits.stop_deceleration[0], 12);
   EXPECT_FALSE(cell->gripper.has_value());
+  EXPECT_FALSE(cell->imu.has_value()) << "then the root's z is up";
   EXPECT_EQ(cell->camera("none"), nullptr);
 }
 
@@ -60,6 +61,7 @@ TEST_F(WorkcellTest, ReadsEverySection) {
   const auto cell = loadText(
       "format: 1\nname: all\nrobot: {urdf: robot.urdf}\n"
       "arm: {base: base, tip: arm, max_velocity: [1.5], max_acceleration: [4.5], stop_deceleration: 15, limit_margin: 0.25}\n"
+      "imu: {link: eye, topic: /base/imu}\n"
       "gripper: {joint: g, open: 0.1, closed: 0, max_width: 0.2, links: [finger], device: hand}\n"
       "pan_tilts: [{name: pt, pan_joint: j, tilt_joint: g}]\n"
       "cameras:\n  - {name: a, link: eye, calibration: a.yaml, pan_tilt: pt, stereo_partner: b, role: stereo_left}\n"
@@ -76,6 +78,9 @@ TEST_F(WorkcellTest, ReadsEverySection) {
   EXPECT_DOUBLE_EQ(cell->arm_limits.max_velocity[0], 1.5);
   EXPECT_DOUBLE_EQ(cell->arm_limits.stop_deceleration[0], 15);
   EXPECT_EQ(cell->gripper->device, "hand");
+  ASSERT_TRUE(cell->imu.has_value());
+  EXPECT_EQ(cell->imu->link, "eye");
+  EXPECT_EQ(cell->imu->topic, "/base/imu");
   EXPECT_EQ(cell->camera("a")->calibration, (m_folder / "a.yaml").string());
   EXPECT_DOUBLE_EQ(cell->camera("b")->sigma_px, 0.25);
   EXPECT_EQ(cell->backend.topics.at("/joint_states"), "/js");

@@ -79,6 +79,18 @@ class PlanControllerTest : public longarm::testing::EventLoopTest {
 
 const Vector3d kNear(0.85, 0.1, 0.85);
 
+TEST_F(PlanControllerTest, SaysWhatAboveMeansAndPlansByIt) {
+  addPoint(kNear);
+  EXPECT_TRUE(row("move_above").advice.contains(QStringLiteral("base's own z"))) << row("move_above").advice.toStdString();
+  EXPECT_TRUE(row("grab_pipe").advice.isEmpty());
+  const Vector3d up = Vector3d(0.1, -0.1, 1).normalized();
+  m_plans.setUpSource([up] { return up; });
+  EXPECT_TRUE(row("move_above").advice.isEmpty());
+  const auto context = m_plans.contextOf(QStringLiteral("move_above"));
+  ASSERT_TRUE(context && context->up);
+  EXPECT_EQ(*context->up, up);
+}
+
 TEST_F(PlanControllerTest, OffersWhatTheSelectionsKindAllowsAndSaysWhyNot) {
   EXPECT_TRUE(row("home").enabled) << row("home").reason.toStdString();
   EXPECT_FALSE(row("touch").enabled);

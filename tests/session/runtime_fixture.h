@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "hardware/sim/simulated_arm.h"
 #include "hardware/sim/simulated_gripper.h"
+#include "hardware/sim/simulated_imu.h"
 #include "hardware/sim/simulated_pan_tilt.h"
 #include "session/robot/robot_runtime.h"
 #include "tests/planning/player_fixture.h"
@@ -63,7 +64,10 @@ class RuntimeFixture : public ::testing::Test {
     m_arm = std::make_shared<hardware::SimulatedArm>("arm", workcell.armJointNames(), m_home,
                                                      workcell.arm_limits.stop_deceleration, clock);
     set.arm = m_arm;
-    set.gripper = std::make_shared<hardware::SimulatedGripper>("gripper", 0.0, 0.05, 0.05, clock);
+    m_gripper = std::make_shared<hardware::SimulatedGripper>("gripper", 0.0, 0.05, 0.05, clock);
+    m_imu = std::make_shared<hardware::SimulatedImu>("imu", clock);
+    set.gripper = m_gripper;
+    set.imu = m_imu;
     set.pan_tilts["head"] = std::make_shared<hardware::SimulatedPanTilt>("head", 1.5, 1.0, clock);
     set.alive_until_s = m_alive_until;
     return set;
@@ -101,6 +105,8 @@ class RuntimeFixture : public ::testing::Test {
   std::shared_ptr<const planning::Workcell> m_workcell = threeJointWorkcell();
   std::shared_ptr<std::atomic<double>> m_alive_until = std::make_shared<std::atomic<double>>(0);
   std::shared_ptr<hardware::SimulatedArm> m_arm;
+  std::shared_ptr<hardware::SimulatedGripper> m_gripper;
+  std::shared_ptr<hardware::SimulatedImu> m_imu;
   std::vector<session::RuntimeEvent> m_events;  // Outlives the runtime, which tells its end.
   std::unique_ptr<session::RobotRuntime> m_runtime;
 };

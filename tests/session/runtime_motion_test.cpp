@@ -274,5 +274,30 @@ TEST_F(RuntimeMotion, TheConfigurationHoldsTheMeasuredJoints) {
   EXPECT_LT((*q - m_home).norm(), 1e-12);
 }
 
+// Which way is up: turned from the sensor's frame, and not believed when it is old.
+class TiltedRobot : public longarm::testing::RuntimeFixture {
+ protected:
+  void SetUp() override {
+    auto cell = std::make_shared<planning::Workcell>(*longarm::testing::threeJointWorkcell());
+    cell->imu = planning::ImuSpec{"a", ""};           // turns with joint_1
+    m_workcell = cell;
+    start();
+  }
+};
+
+TEST_F(TiltedRobot, SaysWhichWayIsUpInItsRootFrame) {
+  m_imu->tilt({0.2, 0, 1});
+  step(0.1);
+  const auto up = m_runtime->status().up;
+  ASSERT_TRUE(up.has_value());
+  const Eigen::Vector3d wanted = Eigen::AngleAxisd(m_home[0], Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(0.2, 0, 1).normalized();
+  EXPECT_LT((*up - wanted).norm(), 1e-6);
+  m_imu->freeze(true);
+  step(0.5);
+  EXPECT_TRUE(m_runtime->status().up.has_value());
+  step(1);
+  EXPECT_FALSE(m_runtime->status().up.has_value()) << "told more than a second ago";
+}
+
 }  // namespace
 }  // namespace longarm::session

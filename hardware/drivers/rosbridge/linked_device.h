@@ -3,6 +3,7 @@
 /// @file
 /// LinkedDevice: the life cycle of a device that shares a Connection with others.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -55,6 +56,25 @@ class LinkedDevice : public RunnerDevice<Kind> {
   Status onClose() override {
     m_robot.link->detach(m_attached);
     return {};
+  }
+
+  /// Listens to a topic for as long as the device is open; what cannot be read is a trouble of this device and no other's.
+  /// @param take  Called on the connection's thread with each message and when it came on the console's clock [s].
+  template <typename Message>
+  std::uint64_t listen(const std::string& topic, std::function<Status(const Message&, double)> take) {
+    rosbridge::Subscribe what;
+    what.topic = topic;
+    what.type = Message::kType;
+    return link().subscribe(std::move(what), [this, take](const rosbridge::Publish& message, double received_s) -> Status {
+      const auto read = rosbridge::readAs<Message>(message.message);
+      if (const Status taken = read ? take(*read, received_s) : Status(read.error()); !taken) this->runner().trouble(taken.error());
+      return {};
+    });
+  }
+  /// A stamp of the robot on the console's clock, whose offset the joint states tell; before the first of them arrival counts.
+  double onOurClock(double stamp_s, double received_s) const {
+    const auto offset = joints().offset();
+    return offset ? stamp_s + *offset : received_s;
   }
 
   Status onClearFault() override { return m_robot.link->requireUp(); }

@@ -16,14 +16,8 @@ RosbridgeBase::RosbridgeBase(std::string name, RosbridgeRobot robot, BaseLimits 
 RosbridgeBase::~RosbridgeBase() { close(); }
 
 Status RosbridgeBase::onOpen() {
-  rosbridge::Subscribe what;
-  what.topic = m_odometry_topic;
-  what.type = rosbridge::OdometryMessage::kType;
-  m_subscription = link().subscribe(std::move(what), [this](const auto& message, double received_s) {
-    if (auto status = take(message, received_s); !status)
-      runner().trouble(status.error());  // no other device's matter
-    return Status();
-  });
+  m_subscription = listen<rosbridge::OdometryMessage>(
+      m_odometry_topic, [this](const auto& message, double received_s) { return take(message, received_s); });
   return LinkedDevice<MobileBase>::onOpen();
 }
 
@@ -32,15 +26,10 @@ Status RosbridgeBase::onClose() {
   return LinkedDevice<MobileBase>::onClose();
 }
 
-// Its stamps are on the robot's clock, whose offset the joint states tell; before the first of them arrival
-// counts.
-Status RosbridgeBase::take(const rosbridge::Publish& message, double received_s) {
-  const auto read = rosbridge::readAs<rosbridge::OdometryMessage>(message.message);
-  if (!read) return read.error();
-  auto state = rosbridge::toBaseState(*read);
+Status RosbridgeBase::take(const rosbridge::OdometryMessage& message, double received_s) {
+  auto state = rosbridge::toBaseState(message);
   if (!state) return state.error();
-  const auto offset = joints().offset();
-  state->stamp_s = offset ? state->stamp_s + *offset : received_s;
+  state->stamp_s = onOurClock(state->stamp_s, received_s);
   m_newest.publish(std::move(*state));
   return {};
 }

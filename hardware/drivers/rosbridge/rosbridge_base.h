@@ -26,7 +26,7 @@ class RosbridgeBase final : public LinkedDevice<MobileBase> {
   Status onStop() override;
 
  private:
-  Status take(const rosbridge::Publish& message, double received_s);
+  Status take(const rosbridge::OdometryMessage& message, double received_s);
 
   const BaseLimits m_limits;
   const std::string m_command_topic, m_odometry_topic;

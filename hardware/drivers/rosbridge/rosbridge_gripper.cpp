@@ -25,17 +25,9 @@ RosbridgeGripper::RosbridgeGripper(std::string name, RosbridgeRobot robot, Gripp
 RosbridgeGripper::~RosbridgeGripper() { close(); }
 
 Status RosbridgeGripper::onOpen() {
-  rosbridge::Subscribe what;
-  what.topic = m_holding_topic;
-  what.type = rosbridge::BoolMessage::kType;
-  m_subscription = link().subscribe(std::move(what), [this](const auto& message, double) -> Status {
-    const auto read = rosbridge::readAs<rosbridge::BoolMessage>(message.message);
-    if (!read) {
-      runner().trouble(read.error());    // no other device's matter
-    } else {
-      m_holding = read->data;
-    }
-    return {};
+  m_subscription = listen<rosbridge::BoolMessage>(m_holding_topic, [this](const auto& message, double) {
+    m_holding = message.data;
+    return Status();
   });
   return LinkedDevice<Gripper>::onOpen();
 }

@@ -24,6 +24,7 @@ class TopicNames {
   std::string gripperHolding() const { return named("/gripper_controller/holding"); }
   std::string panTiltCommand(const std::string& name) const { return named("/pan_tilt/" + name + "/command"); }
   std::string driveCommand() const { return named("/cmd_vel"); }
+  std::string imu() const { return named("/imu/data"); }
   std::string odometry() const { return named("/odom"); }
   std::string image(const std::string& camera) const { return named("/camera/" + camera + "/image/compressed"); }
   std::string zoom(const std::string& camera) const { return named("/camera/" + camera + "/zoom"); }
