@@ -100,6 +100,7 @@ RobotBody::RobotBody(const planning::Workcell& workcell, const planning::Scenari
       m_q(start) {
   const auto& model = *m_workcell.model;
   if (zone) m_gripper.emplace(m_workcell, *zone);
+  if (zone) m_pusher.emplace(m_workcell);
   if (m_workcell.base) {
     const double share = scenario.imperfections.odometry_share;
     SeededRandom random(seed + 17);
@@ -233,6 +234,7 @@ void RobotBody::driveOthers() {
   if (m_gripper) {
     m_gripper->step(kTick_s, X_WT(), m_faults.active("slipping_grasp"), m_world);
     m_q[m_gripper_index] = m_gripper->position();
+    m_pusher->step(m_q, X_WB(), m_world);
   }
   m_world.step(kTick_s);
 }
@@ -292,6 +294,13 @@ Pose RobotBody::X_WB() const {
   return X_WB * poseFromRpy({0.02, 0.01, 0}, {0, 0, 1.0 * M_PI / 180});
 }
 
+std::optional<Attitude> RobotBody::attitude() const {
+  if (!m_workcell.imu) return std::nullopt;
+  const auto link = m_workcell.model->linkIndex(m_workcell.imu->link);
+  const Pose X_WI = X_WB() * m_workcell.model->forward(m_q, *link);
+  return Attitude{time_s(), X_WI.linear().transpose() * m_scenario.up};
+}
+
 Pose RobotBody::X_WT() const {
   const auto tip = m_workcell.model->linkIndex(m_workcell.arm.tip_link);
   return X_WB() * m_workcell.model->forward(m_q, *tip);
@@ -331,6 +340,10 @@ std::vector<GoalState> RobotBody::goals() const {
       state.reached = std::any_of(all.begin(), all.end(), [&](const Mechanism& m) {
         return m.spec().name == goal.object && std::abs(m.value()) >= goal.amount;
       });
+    }
+    if (goal.kind == "move" && index) {
+      const Eigen::Vector3d way = m_world.objects()[*index].body.X_WO.translation() - m_world.startPose(*index).translation();
+      state.reached = way.head<2>().norm() >= goal.amount;
     }
     if (goal.kind == "touch") state.reached = m_contacts.touched(goal.object);
     if (goal.kind == "no_contact") {

@@ -20,8 +20,10 @@
 #include "app/virtual_robot/gripper.h"
 #include "app/virtual_robot/joint_errors.h"
 #include "app/virtual_robot/joint_servo.h"
+#include "app/virtual_robot/pusher.h"
 #include "app/virtual_robot/true_world.h"
 #include "app/virtual_robot/world_snapshot.h"
+#include "core/attitude.h"
 #include "core/motion.h"
 #include "core/result.h"
 #include "planning/world/scenario.h"
@@ -70,6 +72,8 @@ class RobotBody {
   const JointState& measured() const { return m_measured; }
   /// Null when the robot has no base.
   const BaseMotion* base() const { return m_base ? &*m_base : nullptr; }
+  /// As its attitude sensor has it; empty when the robot has none.
+  std::optional<Attitude> attitude() const;
   bool holding() const { return m_gripper && m_gripper->holding(); }
 
   // The truth.
@@ -112,6 +116,7 @@ class RobotBody {
   JointErrors m_errors;
   std::map<std::string, Axis> m_axes;              // joints of neither arm nor gripper
   std::optional<Gripper> m_gripper;
+  std::optional<Pusher> m_pusher;                  // with the gripper
   std::optional<BaseMotion> m_base;
   int m_gripper_index = -1;
   TrueWorld m_world;

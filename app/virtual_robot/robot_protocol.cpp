@@ -17,6 +17,8 @@ constexpr const char* kJoints = "/joint_states";
 constexpr const char* kHolding = "/gripper_controller/holding";
 constexpr const char* kDrive = "/cmd_vel";
 constexpr const char* kOdometry = "/odom";
+constexpr const char* kImu = "/imu/data";
+constexpr double kImuPeriod_s = 0.05;
 
 // "NAME" of "<before>NAME<after>", or nothing.
 std::optional<std::string> between(const std::string& topic, const std::string& before, const std::string& after) {
@@ -154,6 +156,7 @@ Status RobotProtocol::aim(const std::string& pan_tilt, const rosbridge::Body& me
 void RobotProtocol::subscribe(const rosbridge::Subscribe& wish) {
   std::set<std::string> known = {kJoints, kHolding};
   if (m_body.base() != nullptr) known.insert(kOdometry);
+  if (m_body.workcell().imu) known.insert(kImu);
   for (const auto& camera : m_rig.names()) {
     known.insert({imageTopic(camera), infoTopic(camera)});
     if (m_rig.zooms(camera)) known.insert({zoomTopic(camera), focusTopic(camera)});
@@ -226,7 +229,16 @@ void RobotProtocol::afterTick() {
   publish(kJoints, rosbridge::toMessage(m_body.measured(), m_body.measured().stamp_s));
   if (m_body.base() != nullptr)
     publish(kOdometry, rosbridge::toMessage(m_body.base()->odometry(), m_body.time_s()));
+  publishAttitude();
   publishStates();
+}
+
+void RobotProtocol::publishAttitude() {
+  const auto attitude = m_body.attitude();
+  const auto before = m_published_s.find(kImu);
+  if (!attitude || (before != m_published_s.end() && m_body.time_s() - before->second < kImuPeriod_s - 1e-9)) return;
+  m_published_s[kImu] = m_body.time_s();
+  publish(kImu, rosbridge::toMessage(*attitude, attitude->stamp_s, m_body.workcell().imu->link));
 }
 
 void RobotProtocol::tell(const std::string& level, const std::string& text) {

@@ -63,6 +63,7 @@ class RobotProtocol {
   void subscribe(const rosbridge::Subscribe& subscribe);
   void updateCameras();
   void publishStates();
+  void publishAttitude();
   template <typename Message>
   void publish(const std::string& topic, const Message& message);
   void send(Frame frame, bool delayed);

@@ -5,14 +5,24 @@
 #include <variant>
 
 #include "app/virtual_robot/shape_rays.h"
+#include "planning/collision/body_distance.h"
+#include "planning/collision/bounds.h"
 
 namespace longarm::virtual_robot {
 namespace {
 
 constexpr double kGravity = 9.81;        // [m/s^2]
 constexpr double kGround = 0;            // height of the ground [m]
+constexpr double kLift = 0.002;          // what reaches no higher than this above the bottom of what slides is slid over [m]
 constexpr double kGivesTurn = 0.6;       // a hand turned further than this out of a handle loses it [rad]
 constexpr double kTold = 0.005;          // a mechanism that has moved so far counts as a changed world [rad or m]
+
+// Lowest and highest point [m].
+std::pair<double, double> heights(const planning::WorldObject& body) {
+  const planning::ShapeBounds bounds = planning::boundsOf(body.shape);
+  const double middle = (body.X_WO * bounds.center).z(), half = body.X_WO.linear().row(2).cwiseAbs().dot(bounds.half.transpose());
+  return {middle - half, middle + half};
+}
 
 }  // namespace
 
@@ -84,19 +94,53 @@ bool TrueWorld::lead(Mechanism& mechanism, const Pose& X_WT) {
   return off <= mechanism.spec().gives && turned <= kGivesTurn;
 }
 
+std::vector<planning::WorldObject> TrueWorld::others(std::size_t index) const {
+  std::vector<planning::WorldObject> out;
+  for (std::size_t i = 0; i < m_objects.size(); ++i) {
+    if (i != index) out.push_back(m_objects[i].body);
+  }
+  return out;
+}
+
+// Whether something carries its middle; to see whether any of it is carried costs a thousand times more.
+bool TrueWorld::standsOver(std::size_t index) const {
+  const Eigen::Vector3d& middle = m_objects[index].body.X_WO.translation();
+  const double most = planning::boundingRadius(m_objects[index].body.shape) + kLift;
+  if (middle.z() - kGround <= most) return true;
+  const auto others = this->others(index);
+  return std::any_of(others.begin(), others.end(), [&](const planning::WorldObject& other) {
+    const auto hit = other.collides ? planning::rayDistance(other.shape, other.X_WO, middle, -Eigen::Vector3d::UnitZ()) : std::nullopt;
+    return hit && *hit > 0 && *hit <= most;
+  });
+}
+
+void TrueWorld::fall(std::size_t index) {
+  const double way = fallDistance(m_objects[index].body, others(index), kGround);
+  if (way > 0) m_falls.push_back({index, way, 0, 0});
+}
+
+bool TrueWorld::slide(std::size_t index, const Pose& X_WO) {
+  if (guided(index) || m_held == index) return false;
+  planning::WorldObject moved = m_objects[index].body;
+  moved.X_WO = X_WO;
+  const double bottom = heights(moved).first + kLift;        // what it stands on is not in its way
+  for (const auto& other : others(index)) {
+    if (other.collides && heights(other).second > bottom && planning::bodyDistance(moved, other, kLift) <= 0) return false;
+  }
+  place(index, X_WO);
+  const auto falls = [index](const Fall& fall) { return fall.index == index; };
+  if (!standsOver(index) && std::none_of(m_falls.begin(), m_falls.end(), falls)) fall(index);
+  return true;
+}
+
 void TrueWorld::release() {
   if (!m_held) return;
-  std::vector<planning::WorldObject> others;
-  for (std::size_t i = 0; i < m_objects.size(); ++i) {
-    if (i != *m_held) others.push_back(m_objects[i].body);
-  }
   if (guided(*m_held)) {
     m_held.reset();
     ++m_revision;
     return;
   }
-  const double way = fallDistance(m_objects[*m_held].body, others, kGround);
-  if (way > 0) m_falls.push_back({*m_held, way, 0, 0});
+  fall(*m_held);
   m_held.reset();
   ++m_revision;
 }

@@ -30,6 +30,9 @@ class TrueWorld {
 
   /// Moves an object, e.g. when a finger pushes it.  No effect on what is guided.
   void place(std::size_t index, const Pose& X_WO);
+  /// Slides an object over what it stands on; what ends beyond an edge falls.
+  /// @returns false, and nothing moves, where something else is in the way.
+  bool slide(std::size_t index, const Pose& X_WO);
   /// The gripper has closed on it; `X_TO` is its pose in the tool frame.
   void hold(std::size_t index, const Pose& X_TO);
   /// Moves the held object to where the tool is, or as far along its mechanism as the hand leads it.
@@ -54,6 +57,9 @@ class TrueWorld {
     double way, done, speed;
   };
 
+  std::vector<planning::WorldObject> others(std::size_t index) const;
+  bool standsOver(std::size_t index) const;
+  void fall(std::size_t index);
   Mechanism* mechanismOf(std::size_t index);
   bool lead(Mechanism& mechanism, const Pose& X_WT);
 

@@ -102,6 +102,10 @@ ScenarioObject readObject(const json& map, const std::string& place, const std::
   object.body.collides = reader.boolean("collides", true);
   object.surface = reader.text("surface", "");
   object.graspable = reader.boolean("graspable", false);
+  object.slides = reader.boolean("slides", false);
+  if (object.slides && !std::holds_alternative<Box>(object.body.shape) && !std::holds_alternative<Cylinder>(object.body.shape)) {
+    reader.fail("slides is true; only boxes and cylinders slide");
+  }
   reader.refuseUnknownKeys();
   status = reader.status();
   return object;
@@ -131,6 +135,14 @@ void readImperfections(FieldReader& file, Imperfections& result) {
   result.odometry_share = reader.number("odometry_share", result.odometry_share, 0, 0.2);
   reader.refuseUnknownKeys();
   file.adopt(reader.status());
+}
+
+// The robot's frame is the world's: on a slope it is gravity that leans.
+void readSlope(FieldReader& file, Scenario& scenario) {
+  const std::vector<double> slope = file.numbers("slope_deg", 2, -40, 40);
+  if (slope.empty()) return;
+  scenario.up = Eigen::AngleAxisd(-slope[0] * M_PI / 180, Eigen::Vector3d::UnitX()) *
+                (Eigen::AngleAxisd(-slope[1] * M_PI / 180, Eigen::Vector3d::UnitY()) * Eigen::Vector3d::UnitZ());
 }
 
 void readLight(FieldReader& file, ScenarioLight& light) {
@@ -206,6 +218,7 @@ void readMechanisms(FieldReader& file, Scenario& scenario) {
 
 /// How far a goal wants something moved, in the unit of its kind.
 double goalAmount(FieldReader& reader, const ScenarioGoal& goal, const Scenario& scenario) {
+  if (goal.kind == "move") return reader.number("way", 0, 0, kMaxSize);
   if (goal.kind != "open") return reader.number("height", 0, 0, kMaxSize);
   const ScenarioMechanism* mechanism = scenario.mechanism(goal.object);
   if (mechanism == nullptr) {
@@ -222,15 +235,15 @@ void readGoals(FieldReader& file, Scenario& scenario) {
   for (std::size_t i = 0; i < list.size() && file.status(); ++i) {
     FieldReader reader(list[i], at(file.place(), "goals", i));
     ScenarioGoal goal;
-    for (const char* kind : {"grasp", "lift", "touch", "open", "no_contact"}) {
+    for (const char* kind : {"grasp", "lift", "touch", "open", "move", "no_contact"}) {
       if (!reader.has(kind)) continue;
       if (!goal.kind.empty()) reader.fail("holds both " + goal.kind + " and " + kind + "; expected one goal an entry");
       goal.kind = kind;
       goal.object = reader.text(kind, "");
     }
     goal.amount = goalAmount(reader, goal, scenario);
-    if (goal.kind.empty()) reader.fail("names no goal; expected one of grasp, lift, touch, open, no_contact");
-    const bool of_object = goal.kind == "grasp" || goal.kind == "lift";
+    if (goal.kind.empty()) reader.fail("names no goal; expected one of grasp, lift, touch, open, move, no_contact");
+    const bool of_object = goal.kind == "grasp" || goal.kind == "lift" || goal.kind == "move";
     if (of_object && scenario.object(goal.object) == nullptr) reader.fail(goal.kind + ": no object is called \"" + goal.object + "\"");
     reader.refuseUnknownKeys();
     file.adopt(reader.status());
@@ -389,6 +402,7 @@ Result<Scenario> parseScenario(const std::string& text, const std::string& path)
   scenario.robot = file.text("robot", scenario.robot);
   scenario.variant = file.text("variant", "");
   scenario.start_pose = file.text("start_pose", scenario.start_pose);
+  readSlope(file, scenario);
   scenario.ground = file.text("ground", scenario.ground);
   readObjects(file, fs::path(path).parent_path().string(), scenario);
   readMechanisms(file, scenario);

@@ -30,6 +30,7 @@ struct ScenarioObject {
   /// 0.36 x 0.27 m) or empty: plain.
   std::string surface;
   bool graspable = false;                ///< The gripper can close on it (cylinders and boxes).
+  bool slides = false;                   ///< Pushed from the side it slides over what it stands on (boxes and cylinders).
   /// Somebody carries it from stop to stop and begins again; empty: it stays at body.X_WO.
   std::vector<RouteStop> route;
   double travel_s = 1;                   ///< From one stop to the next.
@@ -70,9 +71,9 @@ struct ScenarioMechanism {
 };
 
 struct ScenarioGoal {
-  std::string kind;                      ///< "grasp", "lift", "touch", "open", "no_contact"
+  std::string kind;                      ///< "grasp", "lift", "touch", "open", "move", "no_contact"
   std::string object;                    ///< Or, of "open", the mechanism.
-  double amount = 0;                     ///< lift: height above the start [m]; open: from the start [rad or m].
+  double amount = 0;                     ///< lift: height above the start [m]; open, move: from the start [rad or m].
 };
 
 /// One thing to do: mark something in the pictures, and carry out a macro with it.
@@ -115,6 +116,8 @@ struct Scenario {
   std::vector<ScenarioObject> objects;
   std::vector<ScenarioMechanism> mechanisms;
   ScenarioLight light;
+  /// Unit vector against gravity in the world frame: where the robot stands on a slope it is not z.
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   std::string ground = "concrete";       ///< Surface of the ground.
   Imperfections imperfections;
   std::vector<ScenarioFault> faults;

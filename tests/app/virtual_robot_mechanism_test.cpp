@@ -116,7 +116,7 @@ TEST(GuidedObject, FollowsTheArmAndReachesTheGoal) {
 }
 
 TEST(ScenarioMechanisms, AreReadAndTheirErrorsNamed) {
-  for (const char* name : {"open_door", "turn_valve", "pull_drawer", "scan_panel", "package", "crate"}) {
+  for (const char* name : {"open_door", "turn_valve", "pull_drawer", "scan_panel", "package", "crate", "hatch", "slope"}) {
     const auto scenario = planning::loadScenario(name);
     EXPECT_TRUE(scenario.ok()) << scenario.error().message;
   }

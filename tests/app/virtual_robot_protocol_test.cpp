@@ -114,6 +114,22 @@ TEST(VirtualProtocol, SendsJointStatesAHundredTimesASecondOfItsOwnTime) {
   EXPECT_EQ(states[0]["name"].size(), states[0]["velocity"].size());
 }
 
+TEST(VirtualProtocol, TellsWhichWayIsUpAlsoOnASlope) {
+  RobotOptions options = Session::lockstep();
+  options.scenario = "slope";
+  Session s(options);
+  s.subscribe("/imu/data");
+  s.step(0.5);
+  const auto messages = s.on("/imu/data");
+  EXPECT_GE(messages.size(), 9u);
+  EXPECT_LE(messages.size(), 11u) << "twenty times a second";
+  const json& q = messages.back().at("orientation");
+  const Eigen::Quaterniond orientation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(), q.at("z").get<double>());
+  const Eigen::Vector3d up = orientation.conjugate() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((up - s.body().scenario().up).norm(), 1e-9) << "base_link is the world's frame at the start";
+  EXPECT_LT(up.z(), 0.995) << "it stands on a slope";
+}
+
 TEST(VirtualProtocol, SendsNothingUnasked) {
   Session s;
   s.robot().protocol().receiveText(R"({"op": "advertise", "topic": "/longarm/heartbeat", "type": "std_msgs/Empty"})");

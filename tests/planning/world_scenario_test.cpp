@@ -79,5 +79,28 @@ TEST(ScenarioTask, MistakesAreToldWithTheirPlace) {
   }
 }
 
+TEST(ScenarioSlope, LeansGravityAndKeepsTheWorldsFrame) {
+  const char* head = "format: 1\nname: s\nslope_deg: ";
+  const auto pitched = parseScenario(std::string(head) + "[0, 10]\n", "s.yaml");
+  ASSERT_TRUE(pitched.ok()) << pitched.error().message;
+  // Nose up by a pitch of -10 degrees would lean up forwards; ten degrees nose down lean it back.
+  EXPECT_LT((pitched->up - Eigen::Vector3d(-std::sin(10 * M_PI / 180), 0, std::cos(10 * M_PI / 180))).norm(), 1e-12);
+  const auto rolled = parseScenario(std::string(head) + "[10, 0]\n", "s.yaml");
+  ASSERT_TRUE(rolled.ok()) << rolled.error().message;
+  EXPECT_LT((rolled->up - Eigen::Vector3d(0, std::sin(10 * M_PI / 180), std::cos(10 * M_PI / 180))).norm(), 1e-12);
+  const auto steep = parseScenario(std::string(head) + "[0, 80]\n", "s.yaml");
+  ASSERT_FALSE(steep.ok());
+  EXPECT_NE(steep.error().message.find("slope_deg"), std::string::npos) << steep.error().message;
+}
+
+TEST(ScenarioSlides, OnlyWhatCanStandSlides) {
+  const auto ball = parseScenario("format: 1\nname: s\nobjects: [{name: b, shape: {sphere: {radius: 0.1}}, slides: true}]\n", "s.yaml");
+  ASSERT_FALSE(ball.ok());
+  EXPECT_NE(ball.error().message.find("slides"), std::string::npos) << ball.error().message;
+  const auto goal = parseScenario("format: 1\nname: s\ngoals: [{move: nothing, way: 0.1}]\n", "s.yaml");
+  ASSERT_FALSE(goal.ok());
+  EXPECT_NE(goal.error().message.find("nothing"), std::string::npos) << goal.error().message;
+}
+
 }  // namespace
 }  // namespace longarm::planning
