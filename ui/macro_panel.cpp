@@ -14,6 +14,7 @@
 #include <QVBoxLayout>
 
 #include "widgets/icon.h"
+#include "widgets/time_bar.h"
 
 namespace longarm::ui {
 
@@ -219,6 +220,7 @@ void MacroPanel::showButton(const session::MacroRow& row) {
   showReachOf(row);
   const auto reach = m_bench.reach().answer(row.name);
   QStringList tip{row.description};
+  if (!row.advice.isEmpty()) tip << row.advice;
   if (!row.accuracy.isEmpty()) tip << row.accuracy;
   if (!reach.reason.empty()) tip << QString::fromStdString(reach.reason);
   if (reach.level != Level::kUnknown && reach.level != Level::kNot) tip << tr("At a glance it can be reached, the tool rolled by %1\u00b0.").arg(QString::number(reach.roll * 180 / M_PI, 'f', 0));
@@ -292,8 +294,9 @@ QStringList MacroPanel::told(const planning::Plan& plan) const {
     for (const auto& advice : plan.advice) lines << QStringLiteral("\u2022 ") + QString::fromStdString(advice);
     return lines;
   }
-  lines << tr("%1 s, clearance %2 mm, planned in %3 s.").arg(QString::number(plan.trajectory.duration(), 'f', 1),
-      QString::number(plan.min_clearance * 1000, 'f', 0), QString::number(plan.planning_seconds, 'f', 2));
+  const double least = plan.clearance.empty() ? plan.min_clearance : planning::leastClearance(plan.clearance).distance;
+  lines << tr("%1 s, clearance %2, planned in %3 s.").arg(QString::number(plan.trajectory.duration(), 'f', 1), widgets::clearanceText(least),
+      QString::number(plan.planning_seconds, 'f', 2));
   QStringList stages;
   for (const auto& stage : plan.stages) stages << tr("%1 %2 s").arg(QString::fromStdString(stage.name), QString::number(stage.end_s - stage.start_s, 'f', 1));
   lines << stages.join(QStringLiteral(" \u2192 "));

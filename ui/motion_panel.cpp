@@ -94,9 +94,11 @@ QString MotionPanel::caption() const {
     if (row.name == name) name = row.title;
   }
   if (!state.has_plan) return tr("%1: refused").arg(name);
-  const QString phase = state.playing ? tr("moving") : state.loaded ? tr("on the path") : tr("preview");
-  return tr("%1 (%2), %3 s, clearance %4 mm")
-      .arg(name, phase, QString::number(state.duration_s, 'f', 1), QString::number(record->plan.min_clearance * 1000, 'f', 0));
+  const QString phase = !state.gripper.isEmpty() ? state.gripper : state.playing ? tr("moving") : state.loaded ? tr("on the path") : tr("preview");
+  const auto& clearance = record->plan.clearance;
+  const double least = clearance.empty() ? record->plan.min_clearance : planning::leastClearance(clearance).distance;
+  return tr("%1 (%2), %3 s, clearance %4")
+      .arg(name, phase, QString::number(state.duration_s, 'f', 1), widgets::clearanceText(least));
 }
 
 QString MotionPanel::badge() const {
@@ -182,9 +184,13 @@ void MotionPanel::refreshStages() {
   const auto& record = m_bench.document().plan();
   if (record && record->plan.ok()) {
     duration_s = record->plan.trajectory.duration();
-    for (const auto& stage : record->plan.stages) stages.push_back({QString::fromStdString(stage.name), stage.start_s, stage.end_s});
+    for (const auto& stage : record->plan.stages) {
+      const QString then = !stage.gripper ? QString() : stage.gripper->grips ? tr("the gripper closes") : tr("the gripper opens");
+      stages.push_back({QString::fromStdString(stage.name), stage.start_s, stage.end_s, then});
+    }
   }
   m_bar->setStages(std::move(stages), duration_s);
+  m_bar->setClearance(record && record->plan.ok() ? record->plan.clearance : planning::ClearanceProfile());
   refresh();
 }
 

@@ -1,5 +1,7 @@
 #include "ui/scene_panel.h"
 
+#include <cmath>
+
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QSlider>
@@ -26,6 +28,12 @@ ScenePanel::ScenePanel(Workbench& bench, Actions& actions, Appearance& appearanc
   column->setSpacing(3);
   column->addWidget(buildBar(actions));
   column->addWidget(m_view, 1);
+  m_clearance = new QLabel(this);
+  m_clearance->setTextFormat(Qt::RichText);
+  m_clearance->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+  m_clearance->setObjectName(QStringLiteral("clearance"));
+  column->addWidget(m_clearance);
+  showClearance();
   const auto style = [this, &appearance] { m_view->setTheme(appearance.theme()); };
   style();
   connect(&appearance, &Appearance::changed, this, style);
@@ -153,9 +161,28 @@ void ScenePanel::measureAt(const QPointF& position) {
 }
 
 void ScenePanel::onPlan() {
+  showClearance();
   m_contents->setPlan(m_bench.document());
   m_contents->setCursor(m_bench.play().state().cursor_s);
   m_view->requestRender();
+}
+
+void ScenePanel::showClearance() {
+  const auto& record = m_bench.document().plan();
+  const bool told = record && record->plan.ok() && !record->plan.clearance.empty();
+  m_clearance->setVisible(told);
+  if (!told) return;
+  using Band = planning::ClearanceBand;
+  const auto patch = [](Band band, const QString& text) {
+    return QStringLiteral("<span style=\"background:%1\">&nbsp;&nbsp;&nbsp;</span>&nbsp;%2 ").arg(widgets::clearanceColour(band).name(), text.toHtmlEscaped());
+  };
+  const auto mm = [](double metres) { return QString::number(metres * 1000, 'f', 0); };
+  const auto& least = planning::leastClearance(record->plan.clearance);
+  const QString where = least.distance >= planning::kClearanceTold ? tr("nowhere under %1 mm").arg(mm(planning::kClearanceTold))
+                                                                   : tr("least %1 mm at %2 s").arg(QString::number(std::floor(least.distance * 1000)), QString::number(least.t_s, 'f', 1));
+  m_clearance->setText(patch(Band::kTight, tr("< %1").arg(mm(planning::kTightClearance))) + patch(Band::kNear, tr("< %1 mm").arg(mm(planning::kNearClearance))) +
+                       patch(Band::kFree, tr("more")) + QStringLiteral("\u00b7 ") + where);
+  m_clearance->setToolTip(tr("Clearance along the path: the least distance of robot, and what it holds, from everything that the motion keeps away from."));
 }
 
 void ScenePanel::setPane(PaneSide side, const std::optional<vision::View>& view, const cv::Mat& picture) {

@@ -14,6 +14,7 @@
 #include "ui/scene_contents.h"
 #include "ui/workbench.h"
 
+class QLabel;
 class QSlider;
 
 namespace longarm::ui {
@@ -38,6 +39,7 @@ class ScenePanel final : public QFrame {
   void onWorld();
   void onSketch();
   void onPlan();
+  void showClearance();
   void measureAt(const QPointF& position);
   void showPanes();
   void showAll(scene::CameraPreset preset);
@@ -54,6 +56,7 @@ class ScenePanel final : public QFrame {
   widgets::SceneView* m_view;
   std::unique_ptr<SceneContents> m_contents;
   QSlider* m_opacity;
+  QLabel* m_clearance;                     // What the colours of the path mean.
   std::array<Pane, 2> m_panes;
   QTimer m_pane_timer;                     // Live pictures reach the scene at most a few times a second.
   int m_observer = 0;

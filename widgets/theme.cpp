@@ -6,6 +6,8 @@
 #include <QFile>
 #include <QPalette>
 
+#include "widgets/scene/clearance_look.h"
+
 namespace longarm::widgets {
 
 namespace {
@@ -75,11 +77,17 @@ Theme Theme::light() {
   return t;
 }
 
+QColor clearanceColour(planning::ClearanceBand band) {
+  const Eigen::Vector3d rgb = scene::clearanceColor(band);
+  return QColor::fromRgbF(rgb[0], rgb[1], rgb[2]);
+}
+
 Theme Theme::byName(const QString& name) { return name == QLatin1String("light") ? light() : dark(); }
 
 // Pictures are not themed, so what is drawn over them is the same in both themes.
 RoleStyle Theme::role(vision::OverlayRole role) const {
   using vision::OverlayRole;
+  using Band = planning::ClearanceBand;
   switch (role) {
     case OverlayRole::kSketch: return {QColor(0xf4, 0xf6, 0xf8), 1.6, false, true};
     case OverlayRole::kSelected: return {QColor(0x4f, 0xb9, 0xff), 2.4, false, true};
@@ -90,7 +98,9 @@ RoleStyle Theme::role(vision::OverlayRole role) const {
     case OverlayRole::kDepthTick: return {QColor(0xff, 0xd2, 0x3f), 1.2, false, true};
     case OverlayRole::kMiss: return {QColor(0xff, 0x8a, 0xe6), 2.0, false, true};
     case OverlayRole::kEllipse: return {QColor(0x4f, 0xb9, 0xff), 1.2, false, true};
-    case OverlayRole::kPath: return {QColor(0x5c, 0xf0, 0x8c), 2.4, false, true};
+    case OverlayRole::kPath: return {clearanceColour(Band::kFree), 2.4, false, true};
+    case OverlayRole::kPathNear: return {clearanceColour(Band::kNear), 3.2, false, true};
+    case OverlayRole::kPathTight: return {clearanceColour(Band::kTight), 4.2, false, true};
     case OverlayRole::kPathOccluded: return {QColor(0x5c, 0xf0, 0x8c), 1.4, true, true};
     case OverlayRole::kWarning: return {QColor(0xff, 0xb0, 0x00), 2.0, false, true};
     case OverlayRole::kLabel: return {QColor(0xff, 0xff, 0xff), 1.4, false, true};

@@ -9,6 +9,7 @@
 #include <QColor>
 #include <QString>
 
+#include "planning/motion/clearance.h"
 #include "vision/sketch/pointer_event.h"
 
 class QApplication;
@@ -45,6 +46,9 @@ struct Theme {
   static Theme light();
   static Theme byName(const QString& name);      ///< Dark for any other word.
 };
+
+/// As scene::clearanceColor().
+QColor clearanceColour(planning::ClearanceBand band);
 
 /// Contrast ratio of two colours after WCAG 2.1, 1 ... 21.  Pure function.
 double contrastRatio(const QColor& a, const QColor& b);

@@ -125,6 +125,8 @@ void TransportBar::setStages(std::vector<TimeStage> stages, double duration_s) {
   m_time->setStages(std::move(stages), duration_s);
 }
 
+void TransportBar::setClearance(planning::ClearanceProfile clearance) { m_time->setClearance(std::move(clearance)); }
+
 void TransportBar::showSpeed(double speed) {
   const QSignalBlocker quiet(m_speed);
   if (!m_speed->isSliderDown()) m_speed->setValue(static_cast<int>(std::lround(speed * 10)));

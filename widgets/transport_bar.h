@@ -44,6 +44,7 @@ class TransportBar final : public QWidget {
   void setState(const TransportState& state);
   const TransportState& state() const { return m_state; }
   void setStages(std::vector<TimeStage> stages, double duration_s);
+  void setClearance(planning::ClearanceProfile clearance);
   enum class Key { kPlay, kBackUp, kStage, kStageBack };
   QToolButton* keyButton(Key key) const;
   /// Asks for the next slower or faster step.

@@ -75,7 +75,7 @@ class CannedRun {
   Plan standHere(const ArmSpace& space) {
     m_run.plan().notes.push_back("The arm is already there.");
     appendStage(m_run.plan(), "transit", false, standStill(m_run.workcell().armJointNames(), m_goal, 0.1));
-    m_run.plan().min_clearance = leastClearance(space, m_run.plan().trajectory, 0, 0.1);
+    measureClearance(space, m_run.plan(), 0, 0.1);
     return m_run.finish();
   }
 

@@ -124,6 +124,7 @@ class Corrector {
     out.plan = m_plan;
     out.plan.trajectory = {};
     out.plan.stages.clear();
+    out.plan.clearance.clear();
     std::size_t k = stageAtTau();
     for (std::size_t i = 0; i < k; ++i) copyStage(out.plan, m_plan.stages[i]);
     const bool has_stage = k < m_plan.stages.size();
@@ -141,8 +142,7 @@ class Corrector {
     }
     measureRatios(m_run.workcell(), out.plan);
     out.plan.goal = space.tip(out.plan.trajectory.points.back().positions);
-    const double clearance = leastClearance(space, out.plan.trajectory, out.leave_s, out.plan.trajectory.duration());
-    out.plan.min_clearance = std::min(m_plan.min_clearance, clearance);
+    out.plan.min_clearance = std::min(m_plan.min_clearance, out.plan.min_clearance);
     return out;
   }
 
@@ -162,13 +162,20 @@ class Corrector {
       piece.points.back().t = point.t - stage.start_s;
     }
     piece.points.front().t = 0;
+    const double later = to.trajectory.duration() - stage.start_s;
     appendStage(to, stage.name, stage.straight, piece);
+    to.stages.back().gripper = stage.gripper;
+    for (const auto& sample : m_plan.clearance) {
+      if (sample.t_s >= stage.start_s - kAtEnd && sample.t_s <= stage.end_s + kAtEnd) to.clearance.push_back({sample.t_s + later, sample.distance});
+    }
   }
 
   Status addLeg(Plan& to, const ArmSpace& space, const std::string& name, bool straight, const StraightLeg& leg, double speed) const {
     const auto timed = timedLeg(m_run.workcell(), space, leg, {std::min(speed, m_run.workcell().max_tool_speed)});
     if (!timed) return timed.error();
+    const double start = to.trajectory.duration();
     appendStage(to, name, straight, *timed);
+    measureClearance(space, to, start, to.trajectory.duration());
     return {};
   }
 
@@ -219,7 +226,9 @@ class Corrector {
       leg.waypoints.push_back(rest.joints[i]);
       leg.way.push_back(rest.way[i]);
     }
-    return addLeg(to, space, stage.name, stage.straight, leg, speedOf(space, m_plan.trajectory, stage));
+    if (const Status added = addLeg(to, space, stage.name, stage.straight, leg, speedOf(space, m_plan.trajectory, stage)); !added) return added;
+    to.stages.back().gripper = stage.gripper;
+    return {};
   }
 
   PlanningRun& m_run;

@@ -36,8 +36,7 @@ bool appendFreeMove(PlanningRun& run, const ArmSpace& space, const Eigen::Vector
   const double start = run.plan().trajectory.duration();
   appendStage(run.plan(), stage, false, *trajectory);
   measureRatios(run.workcell(), run.plan());
-  run.plan().min_clearance =
-      leastClearance(space, run.plan().trajectory, start, run.plan().trajectory.duration());
+  measureClearance(space, run.plan(), start, run.plan().trajectory.duration());
   return true;
 }
 

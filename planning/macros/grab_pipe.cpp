@@ -199,8 +199,8 @@ class GrabRun {
     appendStage(plan, "approach", true, *last);
     measureRatios(cell, plan);
     const double end = plan.trajectory.duration(), start = end - last->duration();
-    plan.min_clearance = std::min(leastClearance(transit, plan.trajectory, start - way.duration(), start),
-                                  leastClearance(approach, plan.trajectory, start, end));
+    measureClearance(transit, plan, start - way.duration(), start);
+    measureClearance(approach, plan, start, end);
     plan.goal = chosen.grasp.X_RT;
     plan.entry = chosen.leg.waypoints.front();
     judgeAccuracy(chosen.grasp);

@@ -16,7 +16,8 @@ nlohmann::json poseJson(const Pose& X, const std::string& parent) {
 nlohmann::json toJson(const Plan& plan, const std::string& root) {
   nlohmann::json stages = nlohmann::json::array();
   for (const auto& stage : plan.stages) {
-    stages.push_back({{"name", stage.name}, {"start", stage.start_s}, {"end", stage.end_s}, {"straight", stage.straight}});
+    stages.push_back({{"name", stage.name}, {"start", stage.start_s}, {"end", stage.end_s}, {"straight", stage.straight}, {"gripper", nullptr}});
+    if (stage.gripper) stages.back()["gripper"] = stage.gripper->position;
   }
   nlohmann::json out{{"status", toString(plan.status)},
                      {"reason", plan.reason},
@@ -40,6 +41,8 @@ nlohmann::json toJson(const Plan& plan, const std::string& root) {
   if (!plan.failed_stage.empty()) out["failed_stage"] = plan.failed_stage;
   if (plan.failed_waypoint >= 0) out["failed_waypoint"] = plan.failed_waypoint;
   if (plan.failed_pose) out["failed_pose"] = poseJson(*plan.failed_pose, root);
+  out["clearance"] = nlohmann::json::array();
+  for (const auto& sample : plan.clearance) out["clearance"].push_back({sample.t_s, sample.distance});
   if (plan.ok()) {
     out["min_clearance"] = plan.min_clearance;
     out["duration"] = plan.trajectory.duration();

@@ -11,7 +11,7 @@
 
 namespace longarm::planning {
 
-/// status, reason, macro, advice, failed_stage, failed_waypoint, failed_pose, planning_seconds, min_clearance, duration,
+/// status, reason, macro, advice, failed_stage, failed_waypoint, failed_pose, planning_seconds, min_clearance, clearance, duration,
 /// max_velocity_ratio, max_acceleration_ratio, goal, go, accuracy_note, notes, figures, pan_tilt,
 /// stages.
 /// @param root  Name of the root link: parent of the poses.

@@ -44,6 +44,7 @@ Plan PlanningRun::fail(PlanStatus status, const std::string& reason, int waypoin
   m_plan.failed_pose = pose;
   m_plan.trajectory = {};
   m_plan.stages.clear();
+  m_plan.clearance.clear();
   m_plan.planning_seconds = elapsed();
   return m_plan;
 }
@@ -91,6 +92,15 @@ bool PlanningRun::checkLimits() {
   return true;
 }
 
+Eigen::VectorXd PlanningRun::withGripperAt(double position) const {
+  Eigen::VectorXd q = m_configuration;
+  if (!workcell().gripper) return q;
+  const auto joint = model().jointIndex(workcell().gripper->joint);
+  const int index = joint ? model().joints()[static_cast<std::size_t>(*joint)].q_index : -1;
+  if (index >= 0) q[index] = position;
+  return q;
+}
+
 bool PlanningRun::begin() {
   if (!checkContext()) return false;
   m_start = groupPositions(model(), workcell().arm, m_context.start);
@@ -128,7 +138,7 @@ bool PlanningRun::leaveContact() {
   if (m_grip.touched.empty()) return true;
   const Eigen::Vector3d back = -model().forward(m_configuration, model().linkIndex(workcell().arm.tip_link).valueOr(0)).linear().col(2);
   for (const double way : kBackOff) {
-    for (const Eigen::Vector3d& direction : {back, Eigen::Vector3d(Eigen::Vector3d::UnitZ())}) {
+    for (const Eigen::Vector3d& direction : {back, up()}) {
       if (backOff(way * direction)) return true;
     }
   }
@@ -184,6 +194,27 @@ std::unique_ptr<CollisionWorld> PlanningRun::makeWorld(const std::vector<WorldOb
     Contact contact;
     world->clearance(q, &contact, 2 * options.padding);
     m_plan.notes.push_back("The motion starts close to something (" + contact.sentence() + ") and keeps as little away.");
+  }
+  return world;
+}
+
+std::unique_ptr<CollisionWorld> PlanningRun::makeReleasedWorld(const Pose& X_moved, const Eigen::VectorXd& q, bool may_touch) {
+  const auto held = [this](const WorldObject& object) {
+    return std::find(m_grip.held.begin(), m_grip.held.end(), object.name) != m_grip.held.end();
+  };
+  std::vector<WorldObject> objects = m_objects;
+  for (auto& object : objects) {
+    if (held(object)) object.X_WO = X_moved * object.X_WO;
+  }
+  CollisionOptions options;
+  options.moving = movingIndices(model(), workcell().arm);
+  auto world = std::make_unique<CollisionWorld>(workcell().model, objects, m_allowed, options);
+  allowGrip(*world, workcell(), objects, gripAt(workcell(), objects, q, {}));
+  for (const auto& name : m_grip.held) {
+    if (may_touch) world->allow(name, workcell().gripper->links);
+  }
+  for (const auto& name : m_grip.touched) {
+    if (m_keeps_contact) world->allow(name, workcell().gripper->links);
   }
   return world;
 }

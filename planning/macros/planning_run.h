@@ -31,6 +31,9 @@ class PlanningRun {
   bool cancelled() const { return m_context.cancel.cancelled(); }
   void progress(double fraction, const std::string& what) const;
 
+  /// Unit vector against gravity in the root frame, or the root's z where nothing tells it.
+  Eigen::Vector3d up() const { return m_context.up.value_or(Eigen::Vector3d::UnitZ()); }
+
   /// Looks at the workcell and the start: sizes, limits, collisions.  False: the plan says why.
   /// A start up to 2e-3 outside a limit is moved onto it.
   bool begin();
@@ -43,6 +46,8 @@ class PlanningRun {
   const Eigen::VectorXd& start() const { return m_start; }
   /// The same as a full configuration.
   const Eigen::VectorXd& configuration() const { return m_configuration; }
+  /// configuration() with the gripper's joint elsewhere; unchanged without a gripper.
+  Eigen::VectorXd withGripperAt(double position) const;
 
   /// A collision world of the workcell, the context's objects and `extra`, for motions of the arm.  What the gripper
   /// holds at q moves with the tool.  Where q is closer to something than the padding, the padding shrinks to 80 % of
@@ -53,6 +58,10 @@ class PlanningRun {
   Plan fail(PlanStatus status, const std::string& reason, int waypoint = -1, const std::optional<Pose>& pose = {});
   /// The finished plan.
   Plan finish();
+
+  /// A collision world in which the gripper has let go at q: what it held at the start stands where `X_moved` has taken it (from
+  /// where it stood then, in the root frame).  `may_touch`: the gripper's links may touch it.
+  std::unique_ptr<CollisionWorld> makeReleasedWorld(const Pose& X_moved, const Eigen::VectorXd& q, bool may_touch);
 
  private:
   bool checkContext();

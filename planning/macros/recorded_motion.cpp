@@ -138,8 +138,7 @@ class RecordedRun {
       appendStage(plan, "replay", false, *timed);
     }
     measureRatios(m_run.workcell(), plan);
-    const double least = leastClearance(space, plan.trajectory, start, plan.trajectory.duration());
-    plan.min_clearance = start > 0 ? std::min(plan.min_clearance, least) : least;
+    measureClearance(space, plan, start, plan.trajectory.duration());
     plan.goal = space.tip(m_points.back());
     return m_run.finish();
   }

@@ -15,6 +15,7 @@
 #include "core/motion.h"
 #include "core/pose.h"
 #include "core/result.h"
+#include "planning/motion/clearance.h"
 #include "planning/world/shape.h"
 #include "planning/world/workcell.h"
 
@@ -27,11 +28,19 @@ enum class PlanStatus {
 };
 const char* toString(PlanStatus status);          ///< "ok", "bad_feature", "unreachable", ...
 
+/// What the gripper does while the arm rests between two stages.
+struct GripperStep {
+  double position = 0;                            ///< Of its joint [m or rad].
+  bool grips = false;                             ///< It must close on something; else it must arrive.
+};
+
 /// One named piece of a plan ("transit", "approach", "act", "retreat").
 struct PlanStage {
   std::string name;
   double start_s = 0, end_s = 0;                  ///< Interval of the trajectory.
   bool straight = false;                          ///< Cartesian line of the tool.
+  /// At the stage's end, before anything else moves; a motion backs up no further than to where one was done.
+  std::optional<GripperStep> gripper = {};
 };
 
 struct Plan {
@@ -52,6 +61,7 @@ struct Plan {
   Pose goal = Pose::Identity();                   ///< X_root_tip at the end.
   double planning_seconds = 0;
   double min_clearance = 0;                       ///< [m]
+  ClearanceProfile clearance;                     ///< Over the trajectory's time; empty unless ok.
   double max_velocity_ratio = 0, max_acceleration_ratio = 0;   ///< Of the workcell's limits, 0 ... 1.
   std::string go = "go";                          ///< "go", "ask", "no_go": feature accuracy against the macro's need.
   std::string accuracy_note;                      ///< Why it is not "go".
@@ -68,6 +78,8 @@ struct PlanContext {
   std::vector<WorldObject> objects;               ///< Beyond the workcell's own, or in place of those of the same name.
   std::vector<std::string> held;                  ///< Objects that the gripper is known to hold at the start, besides those that are seen to be.
   Eigen::VectorXd start;                          ///< Full configuration q.
+  /// Unit vector against gravity in the root frame, where the robot tells it; else the root's z is taken for it.
+  std::optional<Eigen::Vector3d> up;
   std::map<std::string, double> arguments;        ///< Of the macro, by MacroParameter::name; others take their default.
   std::vector<Eigen::VectorXd> avoid;             ///< Entries of plans to find another way than.
   unsigned seed = 1;

@@ -15,6 +15,7 @@ constexpr double kChordDeviation = 2e-4;
 constexpr double kCertifiedShare = 0.4;
 constexpr int kHalvings = 6;
 constexpr double kClearanceStep = 0.08;  // [s]
+constexpr double kFurthest = 0.5;        // [m]
 
 TimingOptions timingOptions(const ArmSpace& space, const StageSpeed& speed) {
   TimingOptions options;
@@ -108,14 +109,16 @@ void measureRatios(const Workcell& workcell, Plan& plan) {
   plan.max_acceleration_ratio = ratios.acceleration;
 }
 
-double leastClearance(const ArmSpace& space, const Trajectory& trajectory, double from_s, double to_s, double cap) {
-  double least = cap;
+void measureClearance(const ArmSpace& space, Plan& plan, double from_s, double to_s) {
+  if (plan.clearance.empty()) plan.min_clearance = kFurthest;
   const int steps = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / kClearanceStep)));
   for (int i = 0; i <= steps; ++i) {
-    const Eigen::VectorXd arm = trajectory.sample(from_s + (to_s - from_s) * i / steps).positions;
-    least = std::min(least, space.world().clearance(space.full(arm), nullptr, least));
+    const double t = from_s + (to_s - from_s) * i / steps;
+    const Eigen::VectorXd q = space.full(plan.trajectory.sample(t).positions);
+    const auto [outside, inside] = space.world().clearances(q, std::max(plan.min_clearance, kClearanceTold));
+    plan.min_clearance = std::min({plan.min_clearance, outside, inside});
+    plan.clearance.push_back({t, inside < kTightClearance ? std::min(outside, inside) : outside});
   }
-  return least;
 }
 
 }  // namespace longarm::planning

@@ -44,8 +44,8 @@ void appendStage(Plan& plan, const std::string& name, bool straight, const Traje
 /// Fills in max_velocity_ratio and max_acceleration_ratio, of the workcell's limits.
 void measureRatios(const Workcell& workcell, Plan& plan);
 
-/// Least clearance along [from_s, to_s] of the plan's trajectory, at most `cap` [m].
-double leastClearance(const ArmSpace& space, const Trajectory& trajectory, double from_s, double to_s,
-                      double cap = 0.5);
+/// Looks along [from_s, to_s] of the plan's trajectory: adds to its clearance profile, which ends there or before, and lowers
+/// min_clearance (an empty profile: begins with it; at most 0.5 m).
+void measureClearance(const ArmSpace& space, Plan& plan, double from_s, double to_s);
 
 }  // namespace longarm::planning

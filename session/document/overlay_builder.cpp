@@ -138,13 +138,34 @@ void addFailure(Overlay& overlay, const vision::View& view, const planning::Plan
   addText(overlay, OverlayRole::kWarning, *pixel + Eigen::Vector2d(1.5 * kCross, 0), planning::toString(plan.status) + stage);
 }
 
-// In pieces that are seen and pieces that a known body hides.
-void addPathPieces(Overlay& overlay, const std::vector<Eigen::Vector3d>& path, const std::vector<bool>& hidden, const vision::View& view) {
+OverlayRole roleOf(planning::ClearanceBand band) {
+  switch (band) {
+    case planning::ClearanceBand::kTight: return OverlayRole::kPathTight;
+    case planning::ClearanceBand::kNear: return OverlayRole::kPathNear;
+    case planning::ClearanceBand::kFree: break;
+  }
+  return OverlayRole::kPath;
+}
+
+// How each point of planPath() is drawn, and with it the step that leads there.
+std::vector<OverlayRole> rolesOf(const planning::Plan& plan, const std::vector<bool>& hidden) {
+  std::vector<OverlayRole> roles;
+  const double step_s = plan.trajectory.duration() / static_cast<double>(hidden.size() - 1);
+  for (std::size_t i = 0; i < hidden.size(); ++i) {
+    const auto band = plan.clearance.empty() ? planning::ClearanceBand::kFree
+                                             : planning::bandOf(planning::clearanceAt(plan.clearance, step_s * static_cast<double>(i)));
+    roles.push_back(hidden[i] ? OverlayRole::kPathOccluded : roleOf(band));
+  }
+  return roles;
+}
+
+// In pieces that are drawn alike: by clearance where they are seen, dashed where a known body hides them.
+void addPathPieces(Overlay& overlay, const std::vector<Eigen::Vector3d>& path, const std::vector<OverlayRole>& roles, const vision::View& view) {
   std::vector<Eigen::Vector3d> piece{path.front()};
   for (std::size_t i = 1; i < path.size(); ++i) {
     piece.push_back(path[i]);
-    if (i + 1 < path.size() && hidden[i + 1] == hidden[i]) continue;
-    vision::addPath(piece, view, hidden[i] ? OverlayRole::kPathOccluded : OverlayRole::kPath, &overlay);
+    if (i + 1 < path.size() && roles[i + 1] == roles[i]) continue;
+    vision::addPath(piece, view, roles[i], &overlay);
     piece = {path[i]};
   }
 }
@@ -153,7 +174,8 @@ void addPlan(Overlay& overlay, const Document& document, const vision::View& vie
   if (options.path && document.plan()) addFailure(overlay, view, document.plan()->plan);
   if (!options.path || options.path_points == nullptr || options.path_points->size() < 2) return;
   const auto& path = *options.path_points;
-  addPathPieces(overlay, path, hiddenBehind(bodiesInSight(document, view.parent), view.X_WC.translation(), path), view);
+  const auto hidden = hiddenBehind(bodiesInSight(document, view.parent), view.X_WC.translation(), path);
+  addPathPieces(overlay, path, rolesOf(document.plan() ? document.plan()->plan : planning::Plan(), hidden), view);
 }
 
 }  // namespace

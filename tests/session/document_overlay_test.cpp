@@ -135,11 +135,40 @@ TEST(OverlayBuilder, DrawsThePathOnlyWhereItIsSeen) {
   EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPath).empty());
 }
 
+std::vector<Eigen::Vector3d> levelPath() {
+  std::vector<Eigen::Vector3d> path;
+  for (int i = 0; i <= 40; ++i) path.push_back({1.6, 0.2 - 0.01 * i, 1});
+  return path;
+}
+
+// The path is drawn by how near the motion comes to something, piece by piece without a gap.
+TEST(OverlayBuilder, DrawsThePathByItsClearance) {
+  Bench bench;
+  const auto path = levelPath();
+  OverlayOptions options;
+  options.path_points = &path;
+  PlanRecord record;
+  record.macro = "test";
+  record.plan.status = planning::PlanStatus::kOk;
+  const Eigen::VectorXd one = Eigen::VectorXd::Zero(1);
+  record.plan.trajectory = {{"j"}, {{0, one, one, one}, {4, one, one, one}}};
+  record.plan.clearance = {{0, 0.09}, {1, 0.09}, {1.5, 0.03}, {2.5, 0.03}, {3, 0.01}, {4, 0.01}};
+  bench.document.setPlan(record);
+  const auto overlay = buildOverlay(bench.document, SnapshotId{1}, options);
+  const auto free = shapesOf(overlay, OverlayRole::kPath), near = shapesOf(overlay, OverlayRole::kPathNear), tight = shapesOf(overlay, OverlayRole::kPathTight);
+  ASSERT_EQ(free.size(), 1u);
+  ASSERT_EQ(near.size(), 1u);
+  ASSERT_EQ(tight.size(), 1u);
+  EXPECT_EQ(free[0].points.back(), near[0].points.front());
+  EXPECT_EQ(near[0].points.back(), tight[0].points.front());
+  EXPECT_LT((tight[0].points.back() - *bench.scene.left.project(path.back())).norm(), 1e-9);
+  EXPECT_LT((near[0].points.back() - *bench.scene.left.project(path[25])).norm(), 6) << "where the samples say so";
+}
+
 // A box before the middle of the path: what lies behind it is drawn as hidden, in snapshots and live, and it leaves no gap.
 TEST(OverlayBuilder, DrawsWhatABodyHidesOfThePathAsHidden) {
   Bench bench;
-  std::vector<Eigen::Vector3d> path;
-  for (int i = 0; i <= 40; ++i) path.push_back({1.6, 0.2 - 0.01 * i, 1});
+  const auto path = levelPath();
   OverlayOptions options;
   options.path_points = &path;
   EXPECT_TRUE(shapesOf(buildOverlay(bench.document, SnapshotId{1}, options), OverlayRole::kPathOccluded).empty());

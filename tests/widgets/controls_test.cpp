@@ -146,6 +146,34 @@ TEST(TimeBar, ScrubsWhereItIsPressedOnlyWhenAllowed) {
   bar.grab();
 }
 
+// Higher is more room, in three colours, and in words where the mouse rests.
+TEST(TimeBar, ShowsClearanceOverTimeAndTellsItInMillimetres) {
+  TimeBar bar;
+  bar.resize(218, 56);
+  bar.setStages({{QStringLiteral("transit"), 0, 6}, {QStringLiteral("act"), 6, 10, QStringLiteral("the gripper opens")}}, 10);
+  const QImage without = bar.grab().toImage();
+  bar.setClearance({{0, 0.2}, {2, 0.2}, {3, 0.04}, {5, 0.04}, {6, 0.01}, {10, 0.01}});
+  const QImage with = bar.grab().toImage();
+  const auto columnOf = [&](double t, const QColor& color) {
+    int high = 0;
+    for (int y = 0; y < 16; ++y) high += with.pixelColor(static_cast<int>(bar.xOf(t)), y) == color;
+    return high;
+  };
+  const int free = columnOf(1, clearanceColour(planning::ClearanceBand::kFree)), near = columnOf(4, clearanceColour(planning::ClearanceBand::kNear)),
+            tight = columnOf(8, clearanceColour(planning::ClearanceBand::kTight));
+  EXPECT_GE(free, 10);
+  EXPECT_GT(free, near);
+  EXPECT_GT(near, tight);
+  EXPECT_GE(tight, 2) << "even touching shows";
+  EXPECT_NE(with, without);
+  EXPECT_EQ(bar.textAt(4), QStringLiteral("4.0 s, transit: clearance 40 mm"));
+  EXPECT_EQ(bar.textAt(8), QStringLiteral("8.0 s, act (then the gripper opens): clearance 10 mm"));
+  EXPECT_TRUE(bar.textAt(1).contains(QStringLiteral("100 mm or more"))) << bar.textAt(1).toStdString();
+  EXPECT_NEAR(bar.timeOf(bar.xOf(7)), 7, 1e-9);
+  bar.setClearance({});
+  EXPECT_EQ(bar.grab().toImage(), without);
+}
+
 TEST(CameraStrip, TellsWhichCameraForWhichPane) {
   CameraStrip strip;
   strip.setCameras({QStringLiteral("head_left"), QStringLiteral("wrist")});

@@ -65,6 +65,23 @@ TEST(Theme, KeepsStatusColoursApartForADeuteranope) {
   }
 }
 
+// What the way of the tool is drawn in: apart from one another, and from the ground of the scene.
+TEST(Theme, KeepsClearanceColoursApartForADeuteranope) {
+  using Band = planning::ClearanceBand;
+  const Band bands[] = {Band::kFree, Band::kNear, Band::kTight};
+  const auto distance = [](const QColor& a, const QColor& b) {
+    return std::hypot(std::hypot(a.red() - b.red(), a.green() - b.green()), a.blue() - b.blue());
+  };
+  for (int i = 0; i < 3; ++i) {
+    const QColor a = asDeuteranope(clearanceColour(bands[i]));
+    for (int k = i + 1; k < 3; ++k) EXPECT_GT(distance(a, asDeuteranope(clearanceColour(bands[k]))), 60) << i << " and " << k;
+    EXPECT_GT(distance(a, asDeuteranope(Theme::dark().scene_top)), 60) << i;
+  }
+  const Theme theme = Theme::dark();
+  EXPECT_LT(theme.role(vision::OverlayRole::kPath).width, theme.role(vision::OverlayRole::kPathNear).width) << "not by colour alone";
+  EXPECT_LT(theme.role(vision::OverlayRole::kPathNear).width, theme.role(vision::OverlayRole::kPathTight).width);
+}
+
 TEST(Theme, FillsEveryWordOfTheStyleSheet) {
   for (const Theme& theme : {Theme::dark(), Theme::light()}) {
     const QString sheet = styleSheet(theme);

@@ -36,6 +36,8 @@ enum class SketchKey { kEscape, kDelete, kLeft, kRight, kUp, kDown, kTab, kRetur
 /// What a shape means; the canvas maps it to colour, width and dash of the theme.
 enum class OverlayRole { kSketch, kSelected, kHandle, kActiveHandle, kUnplaced, kEpipolar, kDepthTick, kMiss,
                          kEllipse, kPath, kPathOccluded, kWarning, kLabel,
+                         kPathNear,     ///< A part of the path that comes near to something.
+                         kPathTight,    ///< A part that comes very near.
                          kBand,         ///< Where the calibration may put the true curve, +- 2 sigma.
                          kMatch,        ///< A match that is offered.
                          kRival,        ///< One of several places that look alike.

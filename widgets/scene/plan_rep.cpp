@@ -5,6 +5,7 @@
 
 #include <vtkActor.h>  // vtkRenderingCore
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
@@ -12,9 +13,11 @@
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkSphereSource.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkWeakPointer.h>
 
 #include "core/require.h"
+#include "widgets/scene/clearance_look.h"
 #include "widgets/scene/ground_grid_rep.h"
 #include "widgets/scene/robot_rep.h"
 
@@ -71,21 +74,30 @@ struct PlanRep::Impl {
   }
   RobotLook ghostLook(double factor) const { return {look.ghost_opacity * factor, look.ghost_tint, false}; }
 
-  void paintTrail() {
-    const Eigen::Vector3d& color = look.trail_color;
-    trail_actor->GetProperty()->SetColor(color[0], color[1], color[2]);
-  }
-
   void buildTrail() {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> lines;
-    std::vector<vtkIdType> ids;
-    for (const Pose& X : toolTrail(*model, tip_link, plan, look.trail_samples)) {
-      ids.push_back(points->InsertNextPoint(X.translation().data()));
+    vtkNew<vtkUnsignedCharArray> colors;
+    colors->SetNumberOfComponents(3);
+    const std::vector<Pose> poses = toolTrail(*model, tip_link, plan, look.trail_samples);
+    for (const Pose& X : poses) points->InsertNextPoint(X.translation().data());
+    // A line for each step, in one colour: blended ones would say what was never measured.
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      const vtkIdType ends[2] = {static_cast<vtkIdType>(i) - 1, static_cast<vtkIdType>(i)};
+      lines->InsertNextCell(2, ends);
+      const Eigen::Vector3d color = 255 * colorOfStep(i, poses.size() - 1);
+      colors->InsertNextTuple3(color[0], color[1], color[2]);
     }
-    if (ids.size() > 1) lines->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
     trail->SetPoints(points);
     trail->SetLines(lines);
+    trail->GetCellData()->SetScalars(colors);
+  }
+
+  Eigen::Vector3d colorOfStep(std::size_t step, std::size_t steps) const {
+    if (plan.clearance.empty()) return look.trail_color;
+    const double whole = plan.trajectory.duration(), before = whole * static_cast<double>(step - 1) / static_cast<double>(steps),
+                 after = whole * static_cast<double>(step) / static_cast<double>(steps);
+    return clearanceColor(planning::bandOf(std::min(planning::clearanceAt(plan.clearance, before), planning::clearanceAt(plan.clearance, after))));
   }
 
   void addAxes(const Pose& X, double length) {
@@ -135,7 +147,6 @@ PlanRep::PlanRep(std::shared_ptr<const planning::RobotModel> model, const std::s
   m_impl->trail_actor->SetMapper(mapper);
   m_impl->trail_actor->GetProperty()->LightingOff();
   m_impl->trail_actor->GetProperty()->SetLineWidth(3);
-  m_impl->paintTrail();
   addProp(m_impl->trail_actor);
   vtkNew<vtkPolyDataMapper> failure_mapper;
   failure_mapper->SetInputData(m_impl->failure);
@@ -195,7 +206,6 @@ void PlanRep::setGhostVisible(bool visible) {
 
 void PlanRep::setLook(const PlanLook& look) {
   m_impl->look = look;
-  m_impl->paintTrail();
   m_impl->ghost->setLook(m_impl->ghostLook(1));
   const double cursor = m_impl->cursor;
   update(planning::Plan(m_impl->plan));

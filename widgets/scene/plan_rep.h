@@ -17,13 +17,13 @@ namespace longarm::scene {
 struct PlanLook {
   double ghost_opacity = 0.35;
   Eigen::Vector3d ghost_tint{0.35, 0.75, 1.0};      ///< RGB 0 ... 1
-  Eigen::Vector3d trail_color{0.25, 0.9, 0.45};
+  Eigen::Vector3d trail_color{0.361, 0.941, 0.549};   ///< Of a plan that does not tell its clearance.
   int trail_samples = 160;                          ///< Points of the tool's trail.
   int swept_ghosts = 0;                             ///< Still ghosts spread over the path (the swept trail); 0: none.
   bool axes_at_stages = true;                       ///< Small tool axes where a stage begins and ends.
 };
 
-/// A preview of a plan.
+/// A preview of a plan.  The trail has the colours of its clearance (clearance_look.h).
 class PlanRep final : public Representation {
  public:
   /// @param tip_link the tool frame whose trail is drawn.  Unknown: no trail.

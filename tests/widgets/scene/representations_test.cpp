@@ -5,6 +5,7 @@
 #include "planning/macros/macro.h"
 #include "tests/planning/pipe_scene.h"
 #include "tests/widgets/scene/scene_rig.h"
+#include "widgets/scene/clearance_look.h"
 #include "widgets/scene/dimension_rep.h"
 #include "widgets/scene/frustum_rep.h"
 #include "widgets/scene/ground_grid_rep.h"
@@ -188,6 +189,15 @@ TEST_F(SceneRig, TheRobotIsDrawnAtItsJointsAndLeavesNothingBehind) {
   EXPECT_EQ(cv::countNonZero(drawn(shot())), 0) << "props outlived their representation";
 }
 
+void showTrailAlone(PlanRep& rep, const planning::Plan& plan, vtkRenderer* renderer) {
+  PlanLook look;
+  look.axes_at_stages = false;
+  rep.setLook(look);
+  rep.addTo(renderer);
+  rep.update(plan);
+  rep.setGhostVisible(false);
+}
+
 TEST_F(SceneRig, APlansTrailRunsThroughTheToolTip) {
   const auto& cell = tests::builtIn();
   auto context = tests::contextOf(cell);
@@ -195,12 +205,7 @@ TEST_F(SceneRig, APlansTrailRunsThroughTheToolTip) {
   const planning::Plan plan = planning::findMacro(macros, "ready")->plan(context, nullptr);
   ASSERT_TRUE(plan.ok()) << plan.reason;
   PlanRep rep(cell.model, cell.arm.tip_link);
-  PlanLook look;
-  look.axes_at_stages = false;
-  rep.setLook(look);
-  rep.addTo(renderer());
-  rep.update(plan);
-  rep.setGhostVisible(false);
+  showTrailAlone(rep, plan, renderer());
   m_view.X_WC.translation() = Eigen::Vector3d(-4, 0, 0.7);
   const cv::Mat mask = drawn(shot());
   ASSERT_GT(cv::countNonZero(mask), 10);
@@ -209,6 +214,33 @@ TEST_F(SceneRig, APlansTrailRunsThroughTheToolTip) {
     const cv::Rect near(static_cast<int>(at.x()) - 2, static_cast<int>(at.y()) - 2, 5, 5);
     EXPECT_GT(cv::countNonZero(mask(near & cv::Rect(0, 0, mask.cols, mask.rows))), 0) << X.translation().transpose();
   }
+}
+
+// Each step of the trail has the colour of the least room that was seen on it.
+TEST_F(SceneRig, ThePlansTrailHasTheColoursOfItsClearance) {
+  const auto& cell = tests::builtIn();
+  const auto macros = planning::makeMacros(cell);
+  planning::Plan plan = planning::findMacro(macros, "ready")->plan(tests::contextOf(cell), nullptr);
+  ASSERT_TRUE(plan.ok()) << plan.reason;
+  const double whole = plan.trajectory.duration();
+  plan.clearance = {{0, 0.2}, {0.5 * whole, 0.2}, {0.5 * whole, 0.01}, {whole, 0.01}};
+  PlanRep rep(cell.model, cell.arm.tip_link);
+  showTrailAlone(rep, plan, renderer());
+  m_view.X_WC.translation() = Eigen::Vector3d(-4, 0, 0.7);
+  const cv::Mat picture = shot();
+  const auto count = [&](planning::ClearanceBand band) {
+    const Eigen::Vector3d rgb = 255 * clearanceColor(band);
+    cv::Mat same;
+    cv::inRange(picture, cv::Scalar(rgb[2] - 12, rgb[1] - 12, rgb[0] - 12), cv::Scalar(rgb[2] + 12, rgb[1] + 12, rgb[0] + 12), same);
+    return cv::countNonZero(same);
+  };
+  EXPECT_GT(count(planning::ClearanceBand::kFree), 5);
+  EXPECT_GT(count(planning::ClearanceBand::kTight), 5);
+  EXPECT_EQ(count(planning::ClearanceBand::kNear), 0);
+  plan.clearance.clear();
+  rep.update(plan);
+  rep.setGhostVisible(false);
+  EXPECT_GT(cv::countNonZero(cv::Mat(shot() != picture).reshape(1)), 0) << "one colour where nothing is told";
 }
 
 TEST_F(SceneRig, ScrubbingAPlanMovesItsGhost) {
