@@ -28,6 +28,7 @@ std::unique_ptr<Macro> makeExtractAlong();
 std::unique_ptr<Macro> makeSurfaceScan();
 std::unique_ptr<Macro> makeFollowPerimeter();
 std::unique_ptr<Macro> makePress();
+std::unique_ptr<Macro> makeWipe();
 
 // For a triad, which is a box.
 std::unique_ptr<Macro> makeGraspByFaces();

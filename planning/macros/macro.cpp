@@ -37,6 +37,7 @@ std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
   out.push_back(makeSurfaceScan());
   out.push_back(makeFollowPerimeter());
   out.push_back(makePress());
+  out.push_back(makeWipe());
   out.push_back(makeGraspByFaces());
   out.push_back(makePushFace());
   out.push_back(makeScanFaces());

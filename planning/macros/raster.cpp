@@ -57,7 +57,10 @@ Result<Raster> rasterOf(const PlanePatch& patch, const RasterSpec& spec) {
                                               std::to_string(spec.first_pass) + "; there are 1 to " + std::to_string(kMostPasses)};
   }
   out.spacing = out.passes > 1 ? (frame.width - spec.swath) / (out.passes - 1) : 0;
-  const double lead = spec.speed * spec.speed / (2 * kAcceleration) + kSmoothing * spec.speed;
+  const double lead = spec.run_out ? spec.speed * spec.speed / (2 * kAcceleration) + kSmoothing * spec.speed : -0.5 * out.spacing;
+  if (frame.length + 2 * lead <= 0) {
+    return Error{ErrorCode::kOutOfLimits, "passes " + formatFixed(1e3 * out.spacing, 0) + " mm apart cannot turn within " + formatFixed(1e3 * frame.length, 0) + " mm"};
+  }
   const Eigen::Vector3d z = -std::cos(spec.tilt) * patch.normal + std::sin(spec.tilt) * frame.travel;
   const Eigen::Matrix3d R = toolRotation(z, frame.travel);
   const auto over = [&](double along, int pass) {

@@ -21,11 +21,13 @@ struct RasterSpec {
   bool along_v = false;                  ///< Passes run along the second edge.
   bool mirror_travel = false, mirror_step = false;   ///< Start at another corner.
   int first_pass = 0;                    ///< Passes before it are left out.
+  bool run_out = true;                   ///< Passes begin and end beyond the edge, so that the speed is even over the surface.
 };
 
-/// The raster of a patch: passes back and forth, joined by half circles beyond the edges.
+/// The raster of a patch: passes back and forth, joined by half circles beyond the edges.  Without run_out all of it stays within the
+/// patch: passes end half their spacing before its edges.
 ///
-/// Each pass runs past the edge by v^2 / 2a and the time that acceleration is smoothed over, so that the speed is even
+/// With it each pass runs past the edge by v^2 / 2a and the time that acceleration is smoothed over, so that the speed is even
 /// on the surface.  The tool keeps its orientation: z into the surface, x along the passes.
 struct Raster {
   ToolPath path;

@@ -38,15 +38,11 @@ std::size_t endOfGroup(const TaskPart& part, std::size_t first) {
 }  // namespace
 
 Eigen::VectorXd withGripperOpen(PlanningRun& run) {
-  Eigen::VectorXd q = run.configuration();
-  const auto& gripper = run.workcell().gripper;
-  if (!gripper) return q;
-  const auto joint = run.model().jointIndex(gripper->joint);
-  if (!joint) return q;
-  const int index = run.model().joints()[static_cast<std::size_t>(*joint)].q_index;
-  if (index < 0) return q;
-  if (std::abs(q[index] - gripper->open) > 1e-3) run.plan().notes.push_back("Open the gripper before this motion: it is planned open.");
-  q[index] = gripper->open;
+  if (!run.workcell().gripper) return run.configuration();
+  const Eigen::VectorXd q = run.withGripperAt(run.workcell().gripper->open);
+  if ((q - run.configuration()).cwiseAbs().maxCoeff() > 1e-3) {
+    run.plan().notes.push_back("Open the gripper before this motion: it is planned open.");
+  }
   return q;
 }
 
@@ -110,7 +106,6 @@ bool TaskPlanner::possible(TaskSearch& search, const TaskPart& part) {
 }
 
 bool TaskPlanner::search(TaskSearch& search, const ArmSpace& free) {
-  m_run.plan().min_clearance = 1e9;
   std::vector<std::size_t> doable;
   for (std::size_t k = 0; k < m_job.parts.size(); ++k) {
     const TaskPart& part = m_job.parts[k];
@@ -193,7 +188,7 @@ bool TaskPlanner::time(const ArmSpace& free, TaskSearch& search, const TaskPart&
   const auto add = [&](const std::string& name, bool straight, const ArmSpace& space, const Trajectory& piece) {
     const double start = next.trajectory.duration();
     appendStage(next, prefix + name, straight, piece);
-    next.min_clearance = std::min(next.min_clearance, leastClearance(space, next.trajectory, start, next.trajectory.duration()));
+    measureClearance(space, next, start, next.trajectory.duration());
   };
   if (way.size() > 1 && pathLength(way) > kNoWay) {
     const auto timed = timedPath(cell, free, way, {cell.max_tool_speed});
@@ -206,6 +201,7 @@ bool TaskPlanner::time(const ArmSpace& free, TaskSearch& search, const TaskPart&
     const auto timed = timedLeg(cell, search.spaceOf(stage), task.legs[k], {std::min(stage.speed, cell.max_tool_speed)});
     if (!timed) return false;
     add(stage.name, stage.straight, search.spaceOf(stage), *timed);
+    next.stages.back().gripper = stage.gripper;
   }
   if (next.trajectory.empty()) {
     next.notes.push_back("The tool is already there.");

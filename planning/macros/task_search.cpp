@@ -85,6 +85,18 @@ TaskSearch::TaskSearch(PlanningRun& run, const ArmSpace& free, const ArmSpace& t
   m_solver.setLimits(free.lower(), free.upper());
 }
 
+const ArmSpace& TaskSearch::spaceOf(const ToolStage& stage) const {
+  if (!stage.X_released) return stage.touching ? m_touching : m_free;
+  for (const Released& known : m_released) {
+    if (known.touching == stage.touching && known.X_moved.isApprox(*stage.X_released, 1e-9)) return *known.space;
+  }
+  const Eigen::VectorXd q = m_run.withGripperAt(m_run.workcell().gripper->open);
+  Released made{*stage.X_released, stage.touching, m_run.makeReleasedWorld(*stage.X_released, q, stage.touching), nullptr};
+  made.space = std::make_unique<ArmSpace>(m_run.workcell(), *made.world, q);
+  m_released.push_back(std::move(made));
+  return *m_released.back().space;
+}
+
 void TaskSearch::addPostures(const Pose& X_RT, double roll, const Rungs& rungs, const Eigen::VectorXd& from,
                              std::vector<Rough>& out) {
   IkOptions options;
@@ -213,9 +225,8 @@ std::optional<FollowedTask> TaskSearch::refine(const ToolTask& task, const Rungs
 void TaskSearch::watch(const ToolTask& task, Rungs& rungs) {
   rungs.ladder.stop = [this] { return stop(); };
   rungs.ladder.valid = [this, &task, &rungs](std::size_t rung, const Eigen::VectorXd& arm) {
-    const bool touching = rung > 0 && task.stages[rungs.stage[rung]].touching;
     Contact contact;
-    if ((touching ? m_touching : m_free).valid(arm, &contact)) return true;
+    if ((rung > 0 ? spaceOf(task.stages[rungs.stage[rung]]) : m_free).valid(arm, &contact)) return true;
     m_rung_contact = contact;
     return false;
   };

@@ -3,6 +3,7 @@
 /// @file
 /// Which ways of doing one part of a task the arm can follow from beginning to end.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,7 +53,8 @@ class TaskSearch {
   /// A look at entries and coarse stations only: the first way of the part that is free, tried first as `seed` did it.
   std::optional<ReachSeed> glance(const TaskPart& part, const Eigen::VectorXd& from, const ReachSeed& seed);
   const TaskRefusals& refusals() const { return m_refusals; }
-  const ArmSpace& spaceOf(const ToolStage& stage) const { return stage.touching ? m_touching : m_free; }
+  /// What a stage is looked at in.
+  const ArmSpace& spaceOf(const ToolStage& stage) const;
 
  private:
   struct Rungs;
@@ -70,12 +72,21 @@ class TaskSearch {
                 const std::string& why = {});
   bool stop() const { return m_run.cancelled() || m_run.timeUp(); }
 
+  /// For stages after the gripper has let go; made when one is looked at.
+  struct Released {
+    Pose X_moved;
+    bool touching;
+    std::unique_ptr<CollisionWorld> world;
+    std::unique_ptr<ArmSpace> space;
+  };
+
   PlanningRun& m_run;
   const ArmSpace& m_free;
   const ArmSpace& m_touching;
   IkSolver m_solver;
   Reach m_reach;
   TaskRefusals m_refusals;
+  mutable std::vector<Released> m_released;
   std::optional<Contact> m_rung_contact;         // why the last rung that was refused was
 };
 

@@ -3,10 +3,12 @@
 /// @file
 /// What a macro wants the tool to do, before anybody knows whether the arm can.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/pose.h"
+#include "planning/motion/plan.h"
 #include "planning/motion/tool_path.h"
 
 namespace longarm::planning {
@@ -18,6 +20,10 @@ struct ToolStage {
   double speed = 0.05;                   ///< Of the tool's origin [m/s].
   bool straight = true;                  ///< As PlanStage::straight.
   bool touching = false;                 ///< The gripper's links may touch the task's touchable objects.
+  /// The gripper has let go: planned with it open.  What it held at the start stands where this has taken it from there, in the
+  /// root frame; with `touching` the gripper's links may touch it.
+  std::optional<Pose> X_released = {};
+  std::optional<GripperStep> gripper = {};   ///< At the stage's end.
 };
 
 /// One way to do it: a place to go to freely, then stages without a break.

@@ -90,6 +90,7 @@ struct Player::Impl {
   double now = 0;
   std::optional<double> preview;  // Scrubbed cursor; the arm is where the profile is.
   internal::PathStretch stretch;  // How far to play.
+  internal::PathStretch bounds;   // How far it may be played at all.
   std::uint64_t sequence = 0;
 
   RateState current() const { return profile.at(now); }
@@ -194,8 +195,8 @@ struct Player::Impl {
     return speed > 0 ? PlayerState::kDone : PlayerState::kReady;
   }
 
-  // The whole path is open again.
-  void openStretch() { setStretch({0, table.duration()}); }
+  // All that may be played is open again.
+  void openStretch() { setStretch(bounds); }
   void setStretch(const internal::PathStretch& wanted) {
     stretch = wanted;
     profile.setStretch(wanted);
@@ -279,6 +280,7 @@ Status Player::load(const Trajectory& trajectory) {
   if (auto status = checkLimits(trajectory, m_impl->limits); !status) return status;
   m_impl->trajectory = trajectory;
   m_impl->table = PathTable(trajectory, m_impl->limits);
+  m_impl->bounds = {0, m_impl->table.duration()};
   m_impl->openStretch();
   m_impl->standAt(0);
   m_impl->state = PlayerState::kReady;
@@ -288,6 +290,7 @@ Status Player::load(const Trajectory& trajectory) {
 void Player::clear() {
   m_impl->trajectory = {};
   m_impl->table = {};
+  m_impl->bounds = {};
   m_impl->openStretch();
   m_impl->standAt(0);
   m_impl->state = PlayerState::kEmpty;
@@ -310,6 +313,10 @@ Status Player::playUntil(double tau) {
     return {ErrorCode::kInvalidInput, "play: the time " + formatNumber(tau) + " is not within 0 ... " +
                                           formatNumber(duration()) + " s"};
   }
+  if (tau < m.bounds.low || tau > m.bounds.high) {
+    return {ErrorCode::kRefused, "play: " + formatFixed(tau, 3) + " s lies beyond where the motion may go now, " +
+                                     formatFixed(m.bounds.low, 3) + " ... " + formatFixed(m.bounds.high, 3) + " s"};
+  }
   if (m.trajectory.sample(tau).velocities.cwiseAbs().maxCoeff() > kAtRest) {
     return {ErrorCode::kInvalidInput,
             "play: the path is not at rest at " + formatFixed(tau, 3) + " s; choose the end of a stage"};
@@ -319,8 +326,30 @@ Status Player::playUntil(double tau) {
     return {ErrorCode::kRefused, "play: " + formatFixed(tau, 3) + " s is behind, or too near to stop there"};
   }
   m.preview.reset();
-  m.setStretch(m.speed > 0 ? internal::PathStretch{0, tau} : internal::PathStretch{tau, duration()});
+  m.setStretch(m.speed > 0 ? internal::PathStretch{m.bounds.low, tau} : internal::PathStretch{tau, m.bounds.high});
   m.state = PlayerState::kPlaying;
+  return {};
+}
+
+Status Player::confine(double low, double high) {
+  Impl& m = *m_impl;
+  const bool still = m.state == PlayerState::kReady || m.state == PlayerState::kPaused || m.state == PlayerState::kDone;
+  if (!still) return {ErrorCode::kRefused, "confine: nothing is loaded, or the arm does not stand on it"};
+  constexpr double kSlack_s = 1e-6;
+  const double here = m.current().tau;
+  const bool holds = std::isfinite(low) && std::isfinite(high) && low >= 0 && high <= duration() && low <= here + kSlack_s && here <= high + kSlack_s;
+  if (!holds) {
+    return {ErrorCode::kInvalidInput, "confine: " + formatNumber(low) + " ... " + formatNumber(high) + " s is no part of 0 ... " +
+                                          formatNumber(duration()) + " s that holds the arm at " + formatNumber(here) + " s"};
+  }
+  for (const double end : {low, high}) {
+    if (m.trajectory.sample(end).velocities.cwiseAbs().maxCoeff() > kAtRest) {
+      return {ErrorCode::kInvalidInput, "confine: the path is not at rest at " + formatFixed(end, 3) + " s; choose the end of a stage"};
+    }
+  }
+  m.bounds = {low, high};
+  m.openStretch();
+  m.standAt(std::clamp(here, low, high));
   return {};
 }
 
@@ -377,8 +406,14 @@ Status Player::resumeFrom(const Eigen::VectorXd& measured, double tolerance) {
                                    " off the path (limit " + formatNumber(tolerance) +
                                    "); plan again from here"};
   }
+  // Where the arm rests at a bound, noise has it on either side.
+  const double tau = std::clamp(place.tau, m_impl->bounds.low, m_impl->bounds.high);
+  if ((m_impl->trajectory.sample(tau).positions - measured).cwiseAbs().maxCoeff() > tolerance) {
+    return {ErrorCode::kStale, "resume: the arm stands at " + formatFixed(place.tau, 3) + " s of the path, beyond where the motion may go now, " +
+                                   formatFixed(m_impl->bounds.low, 3) + " ... " + formatFixed(m_impl->bounds.high, 3) + " s; plan again from here"};
+  }
   m_impl->openStretch();
-  m_impl->standAt(place.tau);
+  m_impl->standAt(tau);
   m_impl->state = PlayerState::kPaused;
   return {};
 }

@@ -40,6 +40,11 @@ class Player {
   ///   nothing is loaded, after a halt, at speed 0, or when tau lies behind, or nearer than the arm can come
   ///   to rest.
   Status playUntil(double tau);
+  /// Keeps the motion within [low, high] of the path until the next load(), whatever is ordered: the arm comes to rest at
+  /// either end, kPaused unless it is the path's own.
+  /// @returns kInvalidInput: not an interval of the path that holds the arm, or the path is not at rest at its ends;
+  ///   kRefused while moving, halted or empty.
+  Status confine(double low, double high);
   /// Decelerates along the path within the limits, as soon as they allow: at rest within horizon_s of the last tick, at
   /// any instant and any speed.
   void pause();

@@ -11,13 +11,14 @@ namespace {
 using planning::PlayerState;
 
 constexpr double kAtEnd_s = 1e-6;
+constexpr double kHeld_s = 0.25;           // A button that must be held counts as let go of after so long.
 constexpr double kSlowest = 0.05;          // A wanted factor below this would look like a robot that does not obey.
 
 bool isMoving(PlayerState state) { return state == PlayerState::kPlaying || state == PlayerState::kPausing; }
 
 bool same(const PlayState& a, const PlayState& b) {
   return a.has_plan == b.has_plan && a.loaded == b.loaded && a.playing == b.playing &&
-         a.can_play == b.can_play && a.can_back_up == b.can_back_up && a.can_scrub == b.can_scrub &&
+         a.can_play == b.can_play && a.can_back_up == b.can_back_up && a.gripper == b.gripper && a.can_scrub == b.can_scrub &&
          a.stale == b.stale && a.ask == b.ask && a.correcting == b.correcting && a.only_held == b.only_held &&
          a.halted == b.halted && a.halt_reason == b.halt_reason && a.why_not_stage == b.why_not_stage &&
          a.why_not_stage_back == b.why_not_stage_back && a.why_not_correct == b.why_not_correct &&
@@ -45,6 +46,9 @@ PlayController::~PlayController() { m_document.unobserve(m_observer); }
 void PlayController::setRuntime(RobotRuntime* runtime) {
   m_runtime = runtime;
   m_loaded = {};
+  m_grips = {};
+  m_gripper.reset();
+  m_go_on = false;
   m_off_path.clear();
   m_status = runtime != nullptr ? runtime->status() : RuntimeStatus();
   rebuild();
@@ -60,12 +64,17 @@ void PlayController::refresh(const RuntimeStatus& status) {
   if (status.player == PlayerState::kEmpty) {
     m_loaded = {};
     m_off_path.clear();
+    m_grips = {};
+    m_gripper.reset();
+    m_go_on = false;
   }
+  watchGripper();
   forgetOtherPlan();
   if (m_correction && m_status.player == PlayerState::kDone) finishCorrection();
   if (!m_nudges.empty() && !isMoving(m_status.player)) correctNext();
   if (m_status.player == PlayerState::kEmpty) dropCorrections();
   if (m_status.player == PlayerState::kHalted) {
+    m_go_on = false;
     m_nudges.clear();                    // one on its way is finished after Reset and Play
     m_resume = false;
   }
@@ -77,6 +86,9 @@ void PlayController::forgetOtherPlan() {
   if (m_document.plan() && m_document.plan()->id == m_loaded) return;
   m_runtime->unload();
   m_loaded = {};
+  m_grips = {};
+  m_gripper.reset();
+  m_go_on = false;
 }
 
 QString PlayController::whyNotMove() const {
@@ -114,7 +126,8 @@ void PlayController::rebuild() {
   next.has_plan = shown != nullptr;
   next.only_held = m_only_held;
   next.loaded = shown != nullptr && m_loaded.valid() && m_document.plan()->id == m_loaded;
-  next.playing = isMoving(m_status.player) && m_loaded.valid();
+  next.playing = (isMoving(m_status.player) || m_gripper) && m_loaded.valid();
+  if (m_gripper) next.gripper = m_grips.next()->grips ? tr("the gripper closes") : tr("the gripper opens");
   next.correcting = !m_nudges.empty() || m_planning_correction || m_correction.has_value();
   next.why_not_correct = whyNotCorrect();
   if (shown != nullptr) {
@@ -134,7 +147,9 @@ void PlayController::rebuild() {
                            : next.loaded
                                ? whyNotMove()
                                : tr("The arm stands at the start of this motion: nothing to back up.");
-    if (next.loaded && m_status.player == PlayerState::kDone && next.cursor_s >= next.duration_s - kAtEnd_s) {
+    if (next.loaded && next.why_not_back_up.isEmpty() && m_grips.atLow(m_status.arm_cursor)) next.why_not_back_up = beyondGrip();
+    if (next.loaded && m_gripper) next.why_not_back_up = tr("The gripper moves: wait until it is done, or pause.");
+    if (next.loaded && m_status.player == PlayerState::kDone && !m_grips.due(m_status.arm_cursor) && next.cursor_s >= next.duration_s - kAtEnd_s) {
       next.why_not_play = tr("The motion is done. Back up, or plan the next one.");
     }
     next.halted = next.loaded && m_status.player == PlayerState::kHalted;
@@ -156,6 +171,55 @@ void PlayController::rebuild() {
   Q_EMIT changed();
 }
 
+// Backing up would leave behind, or tear at, what the gripper has let go of or taken there.
+QString PlayController::beyondGrip() const {
+  return tr("The gripper let go of or took something here (%1 of %2): the motion backs up no further. Play on, or plan from here.")
+      .arg(m_grips.done())
+      .arg(m_grips.size());
+}
+
+Status PlayController::confine(std::optional<double> high_s) {
+  if (m_grips.empty()) return {};
+  return m_runtime->confine(m_grips.low(), std::min(m_grips.high(), high_s.value_or(m_grips.high())));
+}
+
+void PlayController::beginGripper() {
+  const planning::GripperStep step = *m_grips.next();
+  if (const Status sent = m_runtime->setGripper(step.position); !sent) {
+    m_go_on = false;
+    Q_EMIT failed(QString::fromStdString(sent.error().message));
+    return;
+  }
+  m_gripper = GripperWatch(step.position, step.grips, m_runtime->gripperPosition(), m_runtime->clock().now_s());
+}
+
+void PlayController::endGripper(const QString& sentence) {
+  m_gripper.reset();
+  m_go_on = false;
+  Q_EMIT failed(sentence);
+}
+
+// The arm rests while the gripper moves; what it is to do begins when the arm has come to rest where it is to be done.
+void PlayController::watchGripper() {
+  if (m_runtime == nullptr || !m_loaded.valid()) return;
+  if (m_only_held && m_runtime->clock().now_s() - m_kept_s > kHeld_s) m_go_on = false;
+  if (!m_gripper) {
+    const bool rests = m_status.player == PlayerState::kPaused || m_status.player == PlayerState::kDone;
+    if (m_go_on && rests && !m_correction && m_grips.due(m_status.arm_cursor)) beginGripper();
+    return;
+  }
+  if (m_status.gate.stopped) return endGripper(tr("STOP ended what the gripper did: after Reset, Play begins with it again."));
+  const auto outcome = m_gripper->look(m_runtime->gripperPosition(), m_runtime->holding(), m_runtime->clock().now_s());
+  if (outcome == GripperWatch::Outcome::kMoving) return;
+  if (outcome == GripperWatch::Outcome::kFailed) {
+    return endGripper(tr("%1 The arm holds here: look what is in its way; Play tries it again.").arg(QString::fromLatin1(m_gripper->failure())));
+  }
+  m_gripper.reset();
+  m_grips.finish();
+  if (const Status open = confine(); !open) return endGripper(QString::fromStdString(open.error().message));
+  if (m_go_on) go(m_go_until);
+}
+
 Status PlayController::load() {
   if (m_loaded.valid() && m_document.plan()->id == m_loaded) return {};
   const auto joints = m_runtime->jointState();
@@ -163,7 +227,9 @@ Status PlayController::load() {
   if (const Status fresh = m_plans.checkFresh(*joints); !fresh) return fresh;
   if (const Status loaded = m_runtime->load(plan()->trajectory); !loaded) return loaded;
   m_loaded = m_document.plan()->id;
-  return {};
+  m_grips = GripSequence(*plan());
+  m_gripper.reset();
+  return confine();
 }
 
 // The next end of a stage that way which the arm can still come to rest at; it needs a horizon for that.
@@ -188,12 +254,15 @@ void PlayController::backUpStage() { move(-1, nextBorder(-1)); }
 void PlayController::setOnlyHeld(bool on) {
   if (m_only_held == on) return;
   m_only_held = on;
+  m_go_on = false;
   if (m_runtime != nullptr && isMoving(m_status.player)) pause();
   rebuild();
 }
 
 void PlayController::keepRunning() {
-  if (m_runtime != nullptr) m_runtime->keepRunning();
+  if (m_runtime == nullptr) return;
+  m_kept_s = m_runtime->clock().now_s();
+  m_runtime->keepRunning();
 }
 
 void PlayController::move(double direction, std::optional<double> until_s) {
@@ -207,8 +276,24 @@ void PlayController::move(double direction, std::optional<double> until_s) {
     return;
   }
   const double size = std::abs(m_speed) < kSlowest ? 1.0 : std::abs(m_speed);
+  m_status = m_runtime->status();
   setSpeed(direction * size);
-  const Status played = m_runtime->play({until_s, m_only_held});
+  keepRunning();
+  m_go_on = direction > 0;
+  m_go_until = until_s;
+  // Where a stop has taken the arm off the player's hands, playing takes it up again first.
+  if (m_go_on && m_grips.due(m_status.arm_cursor) && m_status.player != PlayerState::kHalted) {
+    if (!m_gripper) beginGripper();
+    return rebuild();
+  }
+  go(direction > 0 ? until_s : until_s && *until_s >= m_grips.low() ? until_s : std::nullopt);
+}
+
+// As far as the gripper's next step, or `until_s`.
+void PlayController::go(std::optional<double> until_s) {
+  const bool beyond = m_go_on && until_s && *until_s > m_grips.high();
+  if (m_go_on && until_s && !beyond) m_go_on = false;        // it rests there, whatever the gripper is to do next
+  const Status played = m_runtime->play({beyond ? std::nullopt : until_s, m_only_held});
   // The arm was stopped beside the path, by its own watchdog or by hand: only a new plan starts where it is.
   if (!played && played.error().code == ErrorCode::kStale) m_off_path = QString::fromStdString(played.error().message);
   if (!played) Q_EMIT failed(QString::fromStdString(played.error().message));
@@ -226,6 +311,7 @@ void PlayController::backUp() { move(-1); }
 
 void PlayController::pause() {
   if (m_runtime == nullptr) return;
+  m_go_on = false;
   m_runtime->pause();
   refresh(m_runtime->status());
 }
@@ -252,6 +338,7 @@ void PlayController::scrub(double t_s) {
 QString PlayController::whyNotCorrect() const {
   if (plan() == nullptr || !m_loaded.valid() || m_document.plan()->id != m_loaded) return tr("Corrections are made on a motion under way: press Play first.");
   if (!m_off_path.isEmpty()) return m_off_path;
+  if (m_gripper || m_grips.due(m_status.arm_cursor)) return tr("The gripper has something to do here first: press Play.");
   if (m_status.player == PlayerState::kHalted) return tr("The motion was stopped: press Play first, then pause.");
   return whyNotMove();
 }
@@ -262,6 +349,7 @@ void PlayController::nudge(const planning::Nudge& nudge) {
     return;
   }
   if (m_nudges.empty() && !m_planning_correction && !m_correction) m_resume = m_status.player == PlayerState::kPlaying;
+  m_go_on = false;
   m_nudges.push_back(nudge);
   // A correction on its way is finished first; any other motion gives way.
   if (isMoving(m_status.player) && !m_correction) m_runtime->pause();
@@ -308,6 +396,12 @@ void PlayController::takeCorrection(Result<planning::CorrectedPlan> corrected) {
     m_correction = *std::move(corrected);
     m_loaded = {};                       // so that the observer does not unload it
     m_loaded = m_document.setPlan(std::move(record));
+    m_grips = GripSequence(m_correction->plan, m_grips.done());
+    if (const Status held = confine(first.duration()); !held) {
+      dropCorrections();
+      Q_EMIT failed(QString::fromStdString(held.error().message));
+      return;
+    }
     m_runtime->setSpeed(std::max(kSlowest, std::abs(m_speed)));
     started = m_runtime->play();
   }
@@ -325,6 +419,11 @@ void PlayController::finishCorrection() {
   if (!loaded) {
     dropCorrections();
     Q_EMIT failed(QString::fromStdString(loaded.error().message));
+    return;
+  }
+  if (const Status held = confine(); !held) {
+    dropCorrections();
+    Q_EMIT failed(QString::fromStdString(held.error().message));
     return;
   }
   m_status = m_runtime->status();

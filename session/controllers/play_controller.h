@@ -11,6 +11,8 @@
 
 #include "planning/macros/correction.h"
 #include "session/controllers/plan_controller.h"
+#include "session/robot/grip_sequence.h"
+#include "session/robot/gripper_watch.h"
 #include "session/robot/robot_runtime.h"
 
 namespace longarm::session {
@@ -19,12 +21,13 @@ namespace longarm::session {
 struct PlayState {
   bool has_plan = false;                   ///< A plan that worked is on the table.
   bool loaded = false;                     ///< The robot holds it; before that everything is preview.
-  bool playing = false;                    ///< The arm moves along it, or slows down on it.
+  bool playing = false;                    ///< The arm moves along it, slows down on it, or waits on it for the gripper.
   bool can_play = false, can_back_up = false;
   bool can_scrub = false;
   bool only_held = false;                  ///< Hold to run: the motion pauses when keepRunning() ends.
   bool halted = false;                     ///< A stop or fault ended the motion on its path.
   QString halt_reason;                     ///< Why, where something else than the operator did.
+  QString gripper;                         ///< What the gripper does between two stages now; empty: nothing.
   bool correcting = false;                 ///< A correction is planned or carried out.
   bool ask = false;                        ///< The feature is not known as well as the motion needs it: accept it first.
   bool stale = false;                      ///< The robot or the feature is not where the plan was made for: plan again.
@@ -36,6 +39,10 @@ struct PlayState {
 
 /// GUI thread only.  A plan is only shown until play(): that loads it, which is refused when the robot does not stand
 /// at its start, and then moves.  A new plan, or none, unloads the old one as soon as the arm stands.
+///
+/// Where the gripper has to do something between two stages the arm comes to rest, the gripper is commanded and waited for, and
+/// then the motion goes on if it was going on: pause(), STOP, and letting go of a button that must be held end that.  There is no
+/// backing up beyond such a place.
 class PlayController final : public QObject {
   Q_OBJECT
 
@@ -81,6 +88,12 @@ class PlayController final : public QObject {
   void finishCorrection();
   void dropCorrections();
   void move(double direction, std::optional<double> until_s = {});
+  void go(std::optional<double> until_s);
+  Status confine(std::optional<double> high_s = {});
+  void beginGripper();
+  void watchGripper();
+  void endGripper(const QString& sentence);
+  QString beyondGrip() const;
   std::optional<double> nextBorder(double direction) const;
   void forgetOtherPlan();
   QString whyNotMove() const;
@@ -101,6 +114,11 @@ class PlayController final : public QObject {
   std::vector<planning::Nudge> m_nudges;               // To be done one after another.
   bool m_planning_correction = false;                  // A job is at it.
   bool m_resume = false;                               // The arm was moving when the first of them came.
+  GripSequence m_grips;                                // Of the plan that the runtime holds.
+  std::optional<GripperWatch> m_gripper;               // What the arm waits for.
+  bool m_go_on = false;                                // The motion goes on by itself after the gripper's next step ...
+  std::optional<double> m_go_until;                    // ... as far as here.
+  double m_kept_s = 0;                                 // When keepRunning() was last called, on the runtime's clock.
   std::optional<planning::CorrectedPlan> m_correction; // On the way to its corrected pose.
   int m_observer = 0;
 };

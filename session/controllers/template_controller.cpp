@@ -16,9 +16,7 @@ using planning::TemplateStep;
 using Kind = planning::TemplateStep::Kind;
 
 constexpr double kAtHand_m = 0.03;       // The tool point so near to a handle has it between its fingers.
-constexpr double kFingerThere = 0.002;   // [m or rad]
-constexpr double kFingerStill_s = 1.0;   // ... and does not move for so long: it has arrived, or met something.
-constexpr double kFingerLast_s = 15;     // No gripper takes longer.
+constexpr double kFingerThere = GripperWatch::kThere;
 
 // The nearest point of a line's segment, of a box, or a point itself.
 Eigen::Vector3d nearestOn(const vision::Feature& feature, const Eigen::Vector3d& p) {
@@ -218,10 +216,10 @@ Status TemplateController::startGripper(const TemplateStep& step) {
   if (!gripper || !m_hands.move_gripper) return {ErrorCode::kNotFound, "This robot has no gripper."};
   const bool open = step.kind == Kind::kOpenGripper;
   m_run->phase = Phase::kGripper;
-  m_run->begun_s = m_run->finger_still_s = SteadyClock().now_s();
-  m_run->finger = finger().value_or(0);
+  const double wanted = open ? gripper->open : gripper->closed;
+  m_run->gripper = GripperWatch(wanted, !open && m_run->step > 0, finger().value_or(0), SteadyClock().now_s());   // the first only shuts
   tell((open ? tr("%1: opening the gripper.") : tr("%1: closing the gripper.")).arg(placeOf(m_run->step, *actionOf(*m_run))));
-  return m_hands.move_gripper(open ? gripper->open : gripper->closed);
+  return m_hands.move_gripper(wanted);
 }
 
 void TemplateController::refresh(bool moving, bool stopped, bool played_to_the_end) {
@@ -236,20 +234,12 @@ void TemplateController::refresh(bool moving, bool stopped, bool played_to_the_e
 
 void TemplateController::watchGripper(const TemplateStep& step) {
   const auto here = finger();
-  const double now_s = SteadyClock().now_s();
   if (!here) return end(tr("The gripper does not say where it is."));
   const bool open = step.kind == Kind::kOpenGripper;
-  const auto& gripper = *m_document.workcell()->gripper;
-  if (std::abs(*here - m_run->finger) > kFingerThere / 4) {
-    m_run->finger = *here;
-    m_run->finger_still_s = now_s;
-  }
-  const bool there = std::abs(*here - (open ? gripper.open : gripper.closed)) < kFingerThere;
   const bool holding = !open && m_hands.holding && m_hands.holding();
-  const bool grasps = m_run->step > 0;   // else it only shuts
-  if (open ? there : (holding || (there && !grasps))) return finishStep();
-  const bool still = now_s - m_run->finger_still_s > kFingerStill_s && now_s - m_run->begun_s > 2 * kFingerStill_s;
-  if (!still && now_s - m_run->begun_s < kFingerLast_s) return;
+  const auto outcome = m_run->gripper.look(*here, holding, SteadyClock().now_s());
+  if (outcome == GripperWatch::Outcome::kDone || (holding && m_run->step == 0)) return finishStep();
+  if (outcome == GripperWatch::Outcome::kMoving) return;
   end(open ? tr("The gripper does not open.") : tr("The gripper closed on nothing. Open it, look at the mark, and begin again."));
 }
 

@@ -14,6 +14,7 @@
 #include "planning/templates/object_template.h"
 #include "session/controllers/plan_controller.h"
 #include "session/controllers/world_controller.h"
+#include "session/robot/gripper_watch.h"
 
 namespace longarm::session {
 
@@ -77,9 +78,7 @@ class TemplateController final : public QObject {
     std::size_t step = 0;
     Phase phase = Phase::kGripper;
     PlanId plan;
-    double begun_s = 0;
-    double finger = 0;                             // where the gripper was seen last
-    double finger_still_s = 0;                     // ... and since when
+    GripperWatch gripper;
   };
 
   const planning::ObjectTemplate* found(const std::string& name) const;

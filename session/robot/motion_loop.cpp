@@ -111,6 +111,11 @@ void MotionLoop::unload() {
   if (!isMoving(m_player.state())) m_player.clear();
 }
 
+Status MotionLoop::confine(double low_s, double high_s) {
+  std::lock_guard<std::mutex> lock(m_mutex);
+  return m_player.confine(low_s, high_s);
+}
+
 Status MotionLoop::play(const PlayOrder& order) {
   std::lock_guard<std::mutex> lock(m_mutex);
   if (m_player.state() == PlayerState::kEmpty) return {ErrorCode::kRefused, "play: no motion is loaded"};

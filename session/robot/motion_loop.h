@@ -56,6 +56,7 @@ class MotionLoop {
   /// As RobotRuntime's functions of the same names.
   Status load(const Trajectory& trajectory, double at_s = 0);
   void unload();
+  Status confine(double low_s, double high_s);
   Status play(const PlayOrder& order = {});
   void keepRunning() { m_held_s.store(m_clock.now_s()); }
   void pause();

@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "planning/macros/macro.h"
+#include "session/robot/gripper_watch.h"
 #include "session/task/lift_motion.h"
 #include "vision/stereo/measure.h"
 
@@ -271,6 +272,7 @@ StageResult TaskRun::makePlan() {
   planning::PlanContext context;
   context.workcell = m_workcell.get();
   context.start = *q;
+  context.up = m_runtime->status().up;
   context.arguments = m_step.arguments;
   context.seed = m_options.seed;
   context.budget_s = kPlanning_s;
@@ -295,8 +297,16 @@ StageResult TaskRun::openGripper() {
 StageResult TaskRun::play() {
   if (auto status = m_runtime->load(m_plan->trajectory); !status) return status.error();
   m_runtime->setSpeed(m_options.speed);
-  if (auto status = m_runtime->play(); !status) return status.error();
-  if (auto status = playLoaded(20 + 3 * m_plan->trajectory.duration() / m_options.speed, true); !status) return status.error();
+  m_grips = GripSequence(*m_plan);
+  const double longest = 20 + 3 * m_plan->trajectory.duration() / m_options.speed;
+  for (;;) {
+    auto status = m_grips.empty() ? Status() : m_runtime->confine(m_grips.low(), m_grips.high());
+    if (status) status = m_runtime->play();
+    if (status) status = playLoaded(longest, true);
+    if (!status) return status.error();
+    if (m_grips.next() == nullptr) break;
+    if (status = actBetweenStages(); !status) return status.error();
+  }
   const auto known = truth();
   if (!known) return known.error();
   const auto tool = known->links.find(m_workcell->arm.tip_link);
@@ -313,10 +323,26 @@ Status TaskRun::playLoaded(double timeout_s, bool with_faults) {
     if (trouble && (status.player == PlayerState::kHalted || status.player == PlayerState::kPaused)) {
       trouble = {ErrorCode::kRefused, "the motion ended before its end: " + status.notice};
     }
-    return !trouble || status.player == PlayerState::kDone;
+    const bool rests = status.player == PlayerState::kPaused && m_grips.due(status.arm_cursor);
+    return !trouble || rests || status.player == PlayerState::kDone;
   };
   if (auto status = waitFor(done, timeout_s, "the motion did not come to its end"); !status) return status;
   return trouble;
+}
+
+Status TaskRun::actBetweenStages() {
+  const planning::GripperStep step = *m_grips.next();
+  if (auto status = m_runtime->setGripper(step.position); !status) return status;
+  GripperWatch watch(step.position, step.grips, m_runtime->gripperPosition(), elapsed());
+  GripperWatch::Outcome outcome = GripperWatch::Outcome::kMoving;
+  const auto over = [&] {
+    outcome = watch.look(m_runtime->gripperPosition(), m_runtime->holding(), elapsed());
+    return outcome != GripperWatch::Outcome::kMoving;
+  };
+  if (auto status = waitFor(over, kGripper_s + 15, "the gripper did not come to an end"); !status) return status;
+  if (outcome == GripperWatch::Outcome::kFailed) return {ErrorCode::kNoSolution, watch.failure()};
+  m_grips.finish();
+  return {};
 }
 
 StageResult TaskRun::closeGripper() {
@@ -332,6 +358,7 @@ StageResult TaskRun::lift() {
   const double height = liftHeight(m_scenario);
   const auto motion = planLift(*m_workcell, *q, *m_grasped, height);
   if (!motion) return motion.error();
+  m_grips = {};
   if (auto status = m_runtime->load(*motion); !status) return status.error();
   if (auto status = m_runtime->play(); !status) return status.error();
   if (auto status = playLoaded(20 + 3 * motion->duration() / m_options.speed, false); !status) return status.error();

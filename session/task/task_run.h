@@ -17,6 +17,7 @@
 #include "session/robot/robot_runtime.h"
 #include "session/task/synthetic_operator.h"
 #include "session/task/task_faults.h"
+#include "session/robot/grip_sequence.h"
 #include "session/task_runner.h"
 #include "vision/sketch/feature.h"
 
@@ -61,6 +62,8 @@ class TaskRun {
   Status pass();
   Status checkRobot();
   Status playLoaded(double timeout_s, bool with_faults);
+  /// The gripper's next step of the plan, the arm resting where it is due.
+  Status actBetweenStages();
   Result<TaskTruth> truth();
   /// Where the step under way is to be clicked, in the world.
   Result<std::vector<Eigen::Vector3d>> places(const TaskTruth& truth) const;
@@ -82,6 +85,7 @@ class TaskRun {
   std::vector<vision::Snapshot> m_snapshots;
   std::optional<vision::Feature> m_feature;
   std::optional<planning::Plan> m_plan;
+  GripSequence m_grips;                  // of the motion under way
   mutable std::mutex m_mutex;            // guards m_stops
   std::vector<TaskStop> m_stops;
   std::unique_ptr<RobotRuntime> m_runtime;   // ends first: it reports into the above

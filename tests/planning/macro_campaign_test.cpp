@@ -71,7 +71,7 @@ class Queries {
     if (m_macro == "approach_from_side") return aPipe(query);
     if (m_macro == "aim_along_axis" || m_macro == "insert_along") return anAxis(query, scene);
     if (m_macro == "place_disruptor") return anEdge(query);
-    if (m_macro == "surface_scan" || m_macro == "follow_perimeter" || m_macro == "press") return aSurface(query);
+    if (m_macro == "surface_scan" || m_macro == "follow_perimeter" || m_macro == "press" || m_macro == "wipe") return aSurface(query);
     if (m_macro == "grasp_by_faces" || m_macro == "push_face" || m_macro == "scan_faces") return aBox(query, scene);
     return fromHere(query, scene);
   }
@@ -121,7 +121,7 @@ class Queries {
     const Vector3d v = std::cos(lean) * away + std::sin(lean) * Vector3d::UnitZ();
     const double a = m_random.uniform(0.08, 0.15), b = m_random.uniform(0.06, 0.12);
     query.feature = featureOf(FeatureKind::kPlane, {p - a * u + b * v, p - a * u - b * v, p + a * u - b * v});
-    if (m_macro == "press") query.touched = {"mark"};
+    if (m_macro == "press" || m_macro == "wipe") query.touched = {"mark"};
     return query;
   }
 
@@ -296,7 +296,7 @@ Tally run(const std::string& name, int queries, unsigned seed) {
 const std::vector<std::string>& featureMacros() {
   static const std::vector<std::string> names{"look_at", "touch", "move_above", "place_here", "move_around_axis", "approach_from_side", "move_parallel",
                                               "aim_along_axis", "place_disruptor", "insert_along", "extract_along", "surface_scan", "follow_perimeter",
-                                              "press", "grasp_by_faces", "push_face", "scan_faces"};
+                                              "press", "wipe", "grasp_by_faces", "push_face", "scan_faces"};
   return names;
 }
 

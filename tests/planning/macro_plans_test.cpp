@@ -283,6 +283,32 @@ TEST(Press, ReachesTheDepthBeyondTheSurfaceAndComesBack) {
   expectClean(plan);
 }
 
+TEST(Wipe, GoesOverTheSurfaceWithTheToolsEndPressedOntoItAndNeverBeyondItsEdges) {
+  const Plan plan = planned("wipe", upright(), {{"depth", 0.003}, {"inset", 0.02}, {"width", 0.04}});
+  ASSERT_TRUE(plan.ok()) << plan.reason;
+  const PlanStage* wipe = tests::stageOf(plan, "wipe");
+  ASSERT_NE(wipe, nullptr);
+  const double pressed = 0.85 - toolOverhang(cell(), plan.start_configuration) + 0.003;
+  double off = 0, low_y = 1, high_y = -1, low_z = 1, high_z = 0;
+  for (double t = wipe->start_s; t <= wipe->end_s; t += 0.01) {
+    const Vector3d p = toolAt(cell(), plan, t).translation();
+    off = std::max(off, std::abs(p.x() - pressed));
+    low_y = std::min(low_y, p.y()), high_y = std::max(high_y, p.y());
+    low_z = std::min(low_z, p.z()), high_z = std::max(high_z, p.z());
+  }
+  EXPECT_LT(off, 1e-3) << "pressed all the way";
+  EXPECT_GE(low_y, -0.13 - 1e-3);
+  EXPECT_LE(high_y, 0.13 + 1e-3);
+  EXPECT_GE(low_z, 0.42 - 1e-3);
+  EXPECT_LE(high_z, 0.60 + 1e-3);
+  EXPECT_GT(plan.figures.at("coverage"), 0.75) << "of what lies within the inset; the turns leave corners";
+  EXPECT_LT(toolAt(cell(), plan, plan.trajectory.duration()).translation().x(), pressed - 0.07) << "and off it again";
+  expectClean(plan);
+  const Plan narrow = planned("wipe", upright(), {{"inset", 0.105}});
+  EXPECT_EQ(narrow.status, PlanStatus::kLimits);
+  EXPECT_NE(narrow.reason.find("20 mm"), std::string::npos) << narrow.reason;
+}
+
 TEST(GraspByFaces, PutsTheFingersOnFacesThatFit) {
   const Plan plan = planned("grasp_by_faces", crate());
   ASSERT_TRUE(plan.ok()) << plan.reason;

@@ -46,6 +46,7 @@ std::vector<Job> jobsAround(const Vector3d& p) {
           {"surface_scan", wall, {}},
           {"follow_perimeter", wall, {}},
           {"press", wall, {}},
+          {"wipe", wall, {}},
           {"grasp_by_faces", box, {}},
           {"push_face", box, {{"distance", 0.02}}},
           {"scan_faces", box, {}}};
@@ -80,7 +81,7 @@ TEST(OtherArms, SevenJointsDoEveryMacro) {
   ASSERT_TRUE(cell.ok()) << cell.error().message;
   EXPECT_TRUE(cell->warnings.empty()) << cell->warnings.front();
   ASSERT_EQ(cell->arm.joints.size(), 7u);
-  EXPECT_EQ(planAll(*cell, {0.72, 0.05, 0.45}).size(), 18u);
+  EXPECT_EQ(planAll(*cell, {0.72, 0.05, 0.45}).size(), 19u);
 }
 
 TEST(OtherArms, TheUr5DoesEveryMacroThatNeedsNoGripper) {
@@ -95,7 +96,7 @@ TEST(OtherArms, TheUr5DoesEveryMacroThatNeedsNoGripper) {
   std::filesystem::remove_all(folder);
   ASSERT_TRUE(cell.ok()) << cell.error().message;
   const std::set<std::string> beyond{"grab_pipe", "grasp_by_faces", "look_at"};   // no gripper, no camera
-  EXPECT_EQ(planAll(*cell, {0.62, 0.1, 0.3}, beyond).size(), 15u);
+  EXPECT_EQ(planAll(*cell, {0.62, 0.1, 0.3}, beyond).size(), 16u);
   for (const auto& job : jobsAround({0.62, 0.1, 0.3})) {
     if (beyond.count(job.macro) == 0) continue;
     const auto macros = makeMacros(*cell);

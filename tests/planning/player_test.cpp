@@ -369,5 +369,83 @@ TEST_F(PlayerTest, ATimeThatGoesBackwardsIsTakenAsStandingStill) {
   EXPECT_EQ(m_player.cursor(), cursor);
 }
 
+// Two motions one after the other, at rest between them: played no further than the border until it is opened.
+class ConfinedPlayer : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Trajectory half = trapezoid(0.5, 0.4, 1);
+    m_path = half;
+    m_border = half.duration();
+    for (std::size_t i = 1; i < half.points.size(); ++i) {
+      TrajectoryPoint point = half.points[i];
+      point.t += m_border;
+      point.positions[0] += 0.5;
+      m_path.points.push_back(point);
+    }
+    ASSERT_TRUE(m_player.load(m_path).ok());
+  }
+  double run(double seconds) {
+    double furthest = 0, nearest = 1e9;
+    for (double end = m_now + seconds; m_now < end;) {
+      const Horizon horizon = m_player.tick(m_now += kTick_s);
+      for (const auto& point : horizon.points) {
+        furthest = std::max(furthest, point.positions[0]);
+        nearest = std::min(nearest, point.positions[0]);
+      }
+    }
+    m_least = nearest;
+    return furthest;
+  }
+  Player m_player{limitsOf(1, 0.8, 4)};
+  Trajectory m_path;
+  double m_border = 0, m_now = 10, m_least = 0;
+};
+
+TEST_F(ConfinedPlayer, RestsAtTheBorderWhateverIsOrderedUntilItIsOpened) {
+  ASSERT_TRUE(m_player.confine(0, m_border).ok());
+  m_player.setSpeed(2);
+  m_player.play();
+  EXPECT_LE(run(2 * m_path.duration()), 0.5 + 1e-9) << "no horizon reaches beyond";
+  EXPECT_EQ(m_player.state(), PlayerState::kPaused);
+  EXPECT_NEAR(m_player.armCursor(), m_border, 1e-9);
+  m_player.play();
+  EXPECT_LE(run(1), 0.5 + 1e-9) << "another Play changes nothing";
+  EXPECT_EQ(m_player.playUntil(m_path.duration()).error().code, ErrorCode::kRefused);
+  ASSERT_TRUE(m_player.confine(m_border, m_path.duration()).ok());
+  m_player.play();
+  run(2 * m_path.duration());
+  EXPECT_EQ(m_player.state(), PlayerState::kDone);
+  m_player.setSpeed(-1);
+  m_player.play();
+  run(2 * m_path.duration());
+  EXPECT_EQ(m_player.state(), PlayerState::kPaused);
+  EXPECT_NEAR(m_player.armCursor(), m_border, 1e-9) << "and no way back over it";
+  EXPECT_GE(m_least, 0.5 - 1e-6);
+}
+
+TEST_F(ConfinedPlayer, RefusesWhatIsNoRestingPartOfThePathAroundTheArm) {
+  EXPECT_EQ(m_player.confine(0, m_border / 2).error().code, ErrorCode::kInvalidInput) << "not at rest there";
+  EXPECT_EQ(m_player.confine(m_border, m_path.duration()).error().code, ErrorCode::kInvalidInput) << "the arm stands before it";
+  EXPECT_EQ(m_player.confine(0, std::nan("")).error().code, ErrorCode::kInvalidInput);
+  m_player.play();
+  run(0.5);
+  EXPECT_EQ(m_player.confine(0, m_border).error().code, ErrorCode::kRefused) << "it moves";
+}
+
+TEST_F(ConfinedPlayer, ALoadOpensThePathAndAStopKeepsTheBorder) {
+  ASSERT_TRUE(m_player.confine(0, m_border).ok());
+  m_player.play();
+  run(0.8);
+  m_player.halt();
+  ASSERT_TRUE(m_player.resumeFrom(m_path.sample(m_player.armCursor()).positions).ok());
+  m_player.play();
+  EXPECT_LE(run(m_path.duration()), 0.5 + 1e-9);
+  m_player.halt();
+  EXPECT_EQ(m_player.resumeFrom(m_path.sample(m_border + 1).positions).error().code, ErrorCode::kStale) << "beyond it";
+  ASSERT_TRUE(m_player.load(m_path).ok());
+  m_player.play();
+  EXPECT_NEAR(run(2 * m_path.duration()), 1.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace longarm::planning

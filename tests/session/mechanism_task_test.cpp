@@ -6,6 +6,7 @@
 
 #include "planning/macros/macro.h"
 #include "planning/world/scenario.h"
+#include "session/controllers/play_controller.h"
 #include "session/robot/robot_runtime.h"
 #include "tests/session/task_fixture.h"
 
@@ -62,13 +63,18 @@ class MechanismTask : public ::testing::Test {
     const auto macros = planning::makeMacros(*m_cell);
     const auto plan = planning::findMacro(macros, macro)->plan(context, &feature);
     ASSERT_TRUE(plan.ok()) << macro << ": " << plan.reason;
-    ASSERT_TRUE(m_runtime->load(plan.trajectory).ok());
-    ASSERT_TRUE(m_runtime->play().ok());
-    for (int i = 0; i < 600 && m_runtime->status().player != planning::PlayerState::kDone; ++i) {
-      ASSERT_TRUE(m_runtime->step(0.1).ok());
+    m_play.setRuntime(m_runtime.get());
+    PlanRecord record;
+    record.macro = macro;
+    record.plan = plan;
+    m_document.setPlan(record);
+    m_play.play();
+    for (int i = 0; i < 6000 && m_runtime->status().player != planning::PlayerState::kDone; ++i) {
+      ASSERT_TRUE(m_runtime->step(0.02).ok());
+      m_play.refresh(m_runtime->status());
       ASSERT_FALSE(m_runtime->status().gate.stopped) << m_runtime->status().gate.reason;
     }
-    ASSERT_EQ(m_runtime->status().player, planning::PlayerState::kDone);
+    ASSERT_EQ(m_runtime->status().player, planning::PlayerState::kDone) << m_play.state().why_not_play.toStdString();
     ASSERT_TRUE(m_runtime->step(0.5).ok());
   }
   json truth() const { return testing::truthOf(*m_runtime); }
@@ -82,6 +88,10 @@ class MechanismTask : public ::testing::Test {
 
   planning::Scenario m_scenario;
   std::shared_ptr<const planning::Workcell> m_cell;
+  Document m_document;
+  JobRunner m_jobs;
+  PlanController m_plans{m_document, m_jobs};
+  PlayController m_play{m_document, m_plans, m_jobs};
   std::unique_ptr<RobotRuntime> m_runtime;
 };
 
@@ -121,6 +131,22 @@ TEST_F(MechanismTask, TurnsAValve) {
   perform("move_around_axis", lineOf(wheel.origin - 0.1 * wheel.axis, wheel.origin + 0.1 * wheel.axis), {{"angle", 0.6}});
   EXPECT_NEAR(truth().at("mechanisms").at("wheel").get<double>(), 0.6, 0.03);
   expectGoals();
+}
+
+// Further than the arm reaches: it lets go, goes back, and takes the next piece of the rim, twice.
+TEST_F(MechanismTask, TurnsAValveFurtherThanTheArmReachesByGrippingAgain) {
+  open("turn_valve");
+  if (!m_runtime) return;
+  takeHandle("approach_from_side", "rim_1");
+  const auto& wheel = *m_scenario.mechanism("wheel");
+  const double far = 5 * M_PI / 3;
+  perform("move_around_axis", lineOf(wheel.origin - 0.1 * wheel.axis, wheel.origin + 0.1 * wheel.axis),
+          {{"angle", far}, {"regrip", 1}, {"pitch", M_PI / 3}});
+  const json told = truth();
+  EXPECT_NEAR(told.at("mechanisms").at("wheel").get<double>(), far, 0.06);
+  EXPECT_NE(told.at("held"), "rim_1") << "the hand holds another piece of the rim";
+  EXPECT_NE(told.at("held"), "");
+  EXPECT_TRUE(told.at("contacts").empty()) << told.at("contacts").dump();
 }
 
 // The operator who pulls straight at a door: the hand comes off, nothing else happens.

@@ -195,6 +195,153 @@ TEST_F(PlayControllerTest, StepsFromStageToStageBothWays) {
   EXPECT_EQ(player(), PlayerState::kReady);
 }
 
+// Two stages with the gripper between them, and one after.
+class GripperBetweenStages : public PlayControllerTest {
+ protected:
+  void SetUp() override {
+    PlayControllerTest::SetUp();
+    m_gripper->setObject(0.02);
+    run(0.2);                            // until it is active
+    ASSERT_TRUE(m_runtime->setGripper(0).ok());
+    run(1);
+    ASSERT_TRUE(m_runtime->holding());
+    Trajectory there = motion();
+    m_border = there.duration();
+    const std::size_t n = there.points.size();
+    for (int leg = 1; leg < 3; ++leg) {
+      for (std::size_t i = 1; i < n; ++i) {
+        TrajectoryPoint point = there.points[leg == 1 ? n - 1 - i : i];
+        if (leg == 1) point.velocities = -point.velocities;
+        point.t = leg == 1 ? 2 * m_border - point.t : point.t + 2 * m_border;
+        there.points.push_back(point);
+      }
+    }
+    PlanRecord record;
+    record.macro = "test";
+    record.plan.status = planning::PlanStatus::kOk;
+    record.plan.trajectory = there;
+    record.plan.stages = {{"act", 0, m_border, false, planning::GripperStep{0.05, false}},
+                          {"return", m_border, 2 * m_border, false, planning::GripperStep{0, true}},
+                          {"act", 2 * m_border, 3 * m_border, false}};
+    m_document.setPlan(record);
+    QObject::connect(&m_play, &PlayController::failed, &m_play, [this](const QString& why) { m_failed << why; });
+  }
+  bool open() const { return m_runtime->gripperPosition() > 0.049; }
+  double cursor() const { return m_runtime->status().arm_cursor; }
+
+  double m_border = 0;
+  QStringList m_failed;
+};
+
+TEST_F(GripperBetweenStages, IsCommandedWhileTheArmRestsAndThenTheMotionGoesOnByItself) {
+  m_play.play();
+  double opened_at = -1;
+  for (double t = 0; t < 4 * m_border + 8 && player() != PlayerState::kDone; t += 0.02) {
+    run(0.02);
+    const double finger = m_runtime->gripperPosition();
+    if (finger > 0.021 && finger < 0.049 && opened_at < 0) opened_at = cursor();
+    if (!m_play.state().gripper.isEmpty()) {
+      EXPECT_TRUE(m_play.state().playing) << "Pause is there for it";
+      EXPECT_FALSE(m_runtime->status().moving) << "the arm rests meanwhile";
+      EXPECT_FALSE(m_play.state().can_back_up);
+    }
+  }
+  EXPECT_EQ(player(), PlayerState::kDone) << m_failed.join(QLatin1Char('\n')).toStdString();
+  EXPECT_NEAR(opened_at, m_border, 1e-6);
+  EXPECT_TRUE(m_runtime->holding()) << "it has gripped again";
+  EXPECT_TRUE(m_failed.isEmpty());
+}
+
+TEST_F(GripperBetweenStages, IsNotBackedUpOver) {
+  m_play.play();
+  for (int i = 0; i < 6000 && cursor() < 1.5 * m_border; ++i) run(0.02);
+  m_play.backUp();
+  run(1.5 * m_border);
+  EXPECT_NEAR(cursor(), m_border, 1e-6) << "back to where it let go, and no further";
+  EXPECT_FALSE(m_play.state().playing);
+  EXPECT_FALSE(m_play.state().can_back_up);
+  EXPECT_TRUE(m_play.state().why_not_back_up.contains(QStringLiteral("1 of 2"))) << m_play.state().why_not_back_up.toStdString();
+  EXPECT_FALSE(m_play.state().why_not_stage_back.isEmpty());
+  EXPECT_TRUE(open());
+  m_play.backUp();
+  run(1);
+  EXPECT_NEAR(cursor(), m_border, 1e-6);
+  m_play.play();
+  for (int i = 0; i < 6000 && player() != PlayerState::kDone; ++i) run(0.02);
+  EXPECT_EQ(player(), PlayerState::kDone) << "forwards it goes on";
+}
+
+TEST_F(GripperBetweenStages, PauseLetsItFinishAndThenWaitsForPlay) {
+  m_play.play();
+  for (int i = 0; i < 6000 && m_play.state().gripper.isEmpty(); ++i) run(0.02);
+  m_play.pause();
+  run(3);
+  EXPECT_TRUE(open());
+  EXPECT_NEAR(cursor(), m_border, 1e-6) << "nothing goes on by itself after a pause";
+  EXPECT_FALSE(m_play.state().playing);
+  EXPECT_TRUE(m_play.state().can_play) << m_play.state().why_not_play.toStdString();
+  m_play.play();
+  run(1);
+  EXPECT_GT(cursor(), m_border + 0.1);
+}
+
+TEST_F(GripperBetweenStages, StopEndsItAndPlayAfterResetBeginsWithItAgain) {
+  m_play.play();
+  for (int i = 0; i < 6000 && m_play.state().gripper.isEmpty(); ++i) run(0.02);
+  run(0.1);
+  m_runtime->stop("operator", "test");
+  run(2);
+  EXPECT_FALSE(open()) << "STOP halts the fingers too";
+  EXPECT_NEAR(cursor(), m_border, 1e-6);
+  ASSERT_EQ(m_failed.size(), 1);
+  ASSERT_TRUE(m_runtime->resetStop().ok());
+  run(2);
+  EXPECT_FALSE(open()) << "nothing resumes by itself";
+  m_play.play();
+  run(2);
+  EXPECT_TRUE(open());
+  EXPECT_GT(cursor(), m_border) << "and the motion goes on";
+}
+
+TEST_F(GripperBetweenStages, AHandThatClosesOnNothingHoldsTheMotionAndPlayTriesAgain) {
+  m_play.play();
+  for (int i = 0; i < 6000 && cursor() < 1.5 * m_border; ++i) run(0.02);
+  m_gripper->setObject(std::nullopt);    // it has gone
+  run(m_border + 6);
+  EXPECT_NEAR(cursor(), 2 * m_border, 1e-6) << "the arm holds";
+  ASSERT_EQ(m_failed.size(), 1);
+  EXPECT_TRUE(m_failed.front().contains(QStringLiteral("closed on nothing"))) << m_failed.front().toStdString();
+  EXPECT_FALSE(m_play.state().playing);
+  m_gripper->setObject(0.02);            // somebody has put it back
+  m_play.play();
+  for (int i = 0; i < 6000 && player() != PlayerState::kDone; ++i) run(0.02);
+  EXPECT_EQ(player(), PlayerState::kDone);
+}
+
+TEST_F(GripperBetweenStages, StagesAreSteppedOverItOneByOne) {
+  m_play.playStage();
+  run(m_border + 2);
+  EXPECT_NEAR(cursor(), m_border, 1e-6);
+  EXPECT_FALSE(open()) << "the stage ends before the gripper acts";
+  m_play.playStage();
+  run(m_border + 4);
+  EXPECT_TRUE(open());
+  EXPECT_NEAR(cursor(), 2 * m_border, 1e-6);
+  EXPECT_FALSE(m_runtime->holding());
+}
+
+TEST_F(GripperBetweenStages, WithHoldToRunNothingGoesOnAfterTheButtonIsLetGoOf) {
+  m_play.setOnlyHeld(true);
+  m_play.play();
+  for (int i = 0; i < 6000 && m_play.state().gripper.isEmpty(); ++i) {
+    m_play.keepRunning();
+    run(0.02);
+  }
+  EXPECT_NEAR(cursor(), m_border, 1e-6);
+  run(3);                                // the window no longer says that it is held
+  EXPECT_NEAR(cursor(), m_border, 1e-6);
+}
+
 TEST_F(PlayControllerTest, HoldToRunMovesOnlyWhileItIsHeld) {
   showPlan(motion());
   PlayHand hand(m_play);

@@ -133,6 +133,78 @@ TEST_F(PlayCorrectionTest, MovingPausesCorrectsAndGoesOnByItself) {
   EXPECT_EQ(player(), PlayerState::kDone) << "without another Play";
 }
 
+// The offset is eased out over 50 mm of way, or three times its size; from there on the arm is where it was planned to be.
+TEST_F(PlayCorrectionTest, ResumingLeadsBackOntoThePlannedPathWithinAMillimetre) {
+  const planning::Plan planned = m_document.plan()->plan;
+  const auto toolOf = [this](const planning::Plan& plan, double t) {
+    Eigen::VectorXd q = plan.start_configuration;
+    planning::setGroupPositions(*m_workcell->model, m_workcell->arm, plan.trajectory.sample(t).positions, q);
+    return m_workcell->model->forward(q, *m_workcell->model->linkIndex(m_workcell->arm.tip_link)).translation();
+  };
+  std::vector<Eigen::Vector3d> path;
+  for (double t = 0; t <= planned.trajectory.duration(); t += 0.002) path.push_back(toolOf(planned, t));
+  const auto off = [&path](const Eigen::Vector3d& p) {
+    double least = 1e9;
+    for (const auto& q : path) least = std::min(least, (q - p).norm());
+    return least;
+  };
+  m_play.play();
+  run(0.4 * m_play.state().duration_s);
+  m_play.pause();
+  run(1);
+  m_play.nudge({Eigen::Matrix3d::Identity(), {0, 0, 0.02}, {0, 0, 0}});
+  settle();
+  ASSERT_TRUE(m_failed.isEmpty()) << m_failed.join(QLatin1Char('\n')).toStdString();
+  EXPECT_GT(off(tool().translation()), 0.01) << "corrected";
+  m_play.play();
+  double way = 0, worst_after = 0;
+  Eigen::Vector3d last = tool().translation();
+  for (double t = 0; t < 60 && player() != PlayerState::kDone; t += 0.02) {
+    run(0.02);
+    const Eigen::Vector3d here = tool().translation();
+    way += (here - last).norm();
+    last = here;
+    if (way > 0.08) worst_after = std::max(worst_after, off(here));
+  }
+  EXPECT_EQ(player(), PlayerState::kDone);
+  EXPECT_GT(way, 0.12) << "there was way left to see it on";
+  EXPECT_LT(worst_after, 1e-3);
+}
+
+// What was planned with another calibration, or for another cell, is not played; planning again, which is one button, is.
+TEST_F(PlayCorrectionTest, ACalibrationThatChangedMakesThePlanStaleUntilItIsPlannedAgain) {
+  ASSERT_TRUE(m_play.state().can_play) << m_play.state().why_not_play.toStdString();
+  auto changed = std::make_shared<planning::Workcell>(*m_workcell);
+  changed->cameras.front().sigma_px = 0.7;
+  m_document.setWorkcell(changed);
+  m_play.refresh(m_runtime->status());
+  EXPECT_TRUE(m_play.state().stale);
+  EXPECT_FALSE(m_play.state().can_play);
+  EXPECT_TRUE(m_play.state().why_not_play.contains(QStringLiteral("calibration"))) << m_play.state().why_not_play.toStdString();
+  m_play.play();
+  run(0.5);
+  EXPECT_EQ(player(), PlayerState::kEmpty) << "nothing moves";
+  EXPECT_EQ(m_failed.size(), 1);
+  ASSERT_TRUE(m_plans.replan().ok());
+  waitFor([this] { return m_plans.state() == PlanController::State::kIdle; });
+  m_play.refresh(m_runtime->status());
+  EXPECT_FALSE(m_play.state().stale);
+  EXPECT_TRUE(m_play.state().can_play) << m_play.state().why_not_play.toStdString();
+}
+
+// Also under way: a paused motion does not go on by a calibration that it was not planned with.
+TEST_F(PlayCorrectionTest, ACalibrationThatChangesWhilePausedHoldsTheMotion) {
+  m_play.play();
+  run(0.4 * m_play.state().duration_s);
+  m_play.pause();
+  run(1);
+  m_document.setWorkcell(std::make_shared<planning::Workcell>(*m_workcell));
+  m_play.refresh(m_runtime->status());
+  EXPECT_TRUE(m_play.state().stale);
+  EXPECT_FALSE(m_play.state().can_play);
+  EXPECT_FALSE(m_play.state().can_back_up);
+}
+
 TEST_F(PlayCorrectionTest, ARefusedOneLeavesTheMotionAsItWas) {
   m_play.play();
   run(0.4 * m_play.state().duration_s);

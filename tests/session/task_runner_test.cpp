@@ -58,7 +58,7 @@ TEST_P(EveryScenario, ItsTaskIsDoneByClicksAlone) {
   EXPECT_TRUE(report->success) << testing::tableOf(*report);
 }
 INSTANTIATE_TEST_SUITE_P(Scenarios, EveryScenario,
-                         ::testing::Values("open_door", "pull_drawer", "turn_valve", "scan_panel", "package", "crate"));
+                         ::testing::Values("open_door", "pull_drawer", "turn_valve", "scan_panel", "package", "crate", "hatch", "slope"));
 
 TEST_F(TaskRunner, GivesTheSameReportForTheSameSeed) {
   const auto first = toJson(run(lockstepTask(5))), second = toJson(run(lockstepTask(5)));
