@@ -58,6 +58,7 @@ void Workbench::connectParts() {
     m_watch.setFeed(m_robot.feed());
     m_adviser.setFeed(m_robot.feed());
     m_plans.setJointSource([runtime] { return runtime->jointState(); });
+    m_plans.setUpSource([this] { return m_robot.status().up; });
     m_play.setRuntime(runtime);
     m_hand.setLive(runtime->mode() == session::RobotMode::kLive);
     if (m_auto_play && runtime->mode() == session::RobotMode::kLive) {

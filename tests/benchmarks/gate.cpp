@@ -98,11 +98,13 @@ Outcome runBudget(const Budget& budget) {
   std::vector<Latency> runs = {budget.measure(), budget.measure(), budget.measure()};
   std::sort(runs.begin(), runs.end(), [](const Latency& a, const Latency& b) { return a.wall_p95 < b.wall_p95; });
   const Latency& l = runs[1];
-  Outcome outcome{budget.name, "limit", l.wall_p95, budget.limit_s, l.wall_p95 > 0 ? budget.limit_s / l.wall_p95 : 0, 1, 1,
-                  {true, "p95 of wall time; median " + seconds(l.wall_median) + ", p95 of the thread's own work " +
-                             seconds(l.work_p95)},
+  const double judged = budget.of_median ? l.wall_median : l.wall_p95;
+  const std::string text = budget.of_median ? "median of wall time; p95 " + seconds(l.wall_p95)
+                                            : "p95 of wall time; median " + seconds(l.wall_median);
+  Outcome outcome{budget.name, "limit", judged, budget.limit_s, judged > 0 ? budget.limit_s / judged : 0, 1, 1,
+                  {true, text + ", p95 of the thread's own work " + seconds(l.work_p95)},
                   false};
-  outcome.passed = l.wall_p95 > 0 && l.wall_p95 <= budget.limit_s;
+  outcome.passed = judged > 0 && judged <= budget.limit_s;
   return outcome;
 }
 

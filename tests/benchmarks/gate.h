@@ -42,6 +42,7 @@ struct Budget {
   std::string name;
   double limit_s = 0;
   std::function<Latency()> measure;    ///< Runs the whole measurement once.
+  bool of_median = false;              ///< The median is limited, not the 95th percentile.
 };
 
 struct Outcome {
@@ -73,6 +74,7 @@ std::vector<Contest> robotContests();
 #endif
 std::vector<Contest> motionContests();
 std::vector<Budget> stereoBudgets();
+std::vector<Budget> reachBudgets();
 std::vector<Contest> calibrationContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> poseContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);

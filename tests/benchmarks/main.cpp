@@ -53,13 +53,14 @@ int run(int argc, char** argv) {
 #ifdef LONGARM_WITH_KDL
   for (auto& contest : robotContests()) contests.push_back(std::move(contest));
 #else
-  for (const char* name : {"fk_jacobian", "ik", "ik_seven_joints", "cartesian_100"}) skipped[name] = "needs orocos-kdl, which was not found";
+  for (const char* name : {"fk_jacobian", "ik", "ik_seven_joints", "cartesian_100", "reach_question"}) skipped[name] = "needs orocos-kdl, which was not found";
 #endif
   for (auto& contest : motionContests()) contests.push_back(std::move(contest));
   for (auto* more : {&calibrationContests, &poseContests, &paneContests}) {
     for (auto& contest : (*more)(&skipped)) contests.push_back(std::move(contest));
   }
   std::vector<Budget> budgets = stereoBudgets();
+  for (auto& budget : reachBudgets()) budgets.push_back(std::move(budget));
   for (auto& budget : paneBudgets(&skipped)) budgets.push_back(std::move(budget));
   for (auto& budget : sceneBudgets(&skipped)) budgets.push_back(std::move(budget));
   std::vector<std::string> known;

@@ -14,6 +14,9 @@
 
 #include "core/resource_path.h"
 #include "core/text.h"
+#include "planning/macros/feature_geometry.h"
+#include "planning/macros/macro.h"
+#include "planning/macros/reach_advice.h"
 #include "planning/robot/ik.h"
 #include "planning/world/workcell.h"
 #include "tests/benchmarks/gate.h"
@@ -286,6 +289,69 @@ Contest cartesianContest(const std::shared_ptr<Arm>& arm) {
   return contest;
 }
 
+// "Can the tool touch this point?" asked while the point is dragged from before the robot to beyond its reach.  Ours looks at the
+// approach and at collisions too; KDL is asked for the same entry of the approach, turned about the tool's axis as freely.
+struct Drag {
+  static constexpr int kPoints = 40, kRolls = 24;
+  explicit Drag(const Arm& arm) : macros(planning::makeMacros(arm.cell)), touch(planning::findMacro(macros, "touch")) {
+    context.workcell = &arm.cell;
+    context.start = arm.cell.model->neutral();
+    for (const auto& [name, value] : arm.cell.poses.at("ready")) {
+      const auto joint = arm.cell.model->jointIndex(name);
+      if (joint) context.start[arm.cell.model->joints()[static_cast<std::size_t>(*joint)].q_index] = value;
+    }
+    const planning::Reach reach = planning::reachOf(arm.cell, context.start);
+    for (int i = 0; i < kPoints; ++i) {
+      vision::Feature point;
+      point.kind = vision::FeatureKind::kPoint;
+      point.vertices.resize(1);
+      point.vertices[0].xyz = Eigen::Vector3d(0.6 + 0.03 * i, 0.1, 0.5);
+      const Eigen::Vector3d z = (point.vertices[0].xyz - reach.shoulder).normalized();
+      Pose X = planning::poseAt(point.vertices[0].xyz - 0.10 * z, planning::toolRotation(z, Eigen::Vector3d::UnitZ()));
+      std::vector<KDL::Frame> turned;
+      for (int k = 0; k < kRolls; ++k) turned.push_back(frameOf(X * Eigen::AngleAxisd(2 * M_PI * k / kRolls, Eigen::Vector3d::UnitZ())));
+      points.push_back(std::move(point));
+      entries.push_back(std::move(turned));
+    }
+  }
+  int ours() const {
+    int reached = 0;
+    planning::ReachAnswer last;
+    for (const auto& point : points) {
+      last = touch->reach(context, point, last.seed);
+      reached += last.level != planning::ReachAnswer::Level::kNot;
+    }
+    return reached;
+  }
+  int theirs(Arm& arm) const {
+    int reached = 0;
+    std::mt19937 restarts(3);
+    VectorXd q = 0.5 * (arm.lower + arm.upper);
+    for (const auto& entry : entries) {
+      reached += std::any_of(entry.begin(), entry.end(), [&](const KDL::Frame& frame) { return arm.kdlSolve(frame, q, restarts, q); });
+    }
+    return reached;
+  }
+  std::vector<std::unique_ptr<planning::Macro>> macros;
+  const planning::Macro* touch;
+  planning::PlanContext context;
+  std::vector<vision::Feature> points;
+  std::vector<std::vector<KDL::Frame>> entries;
+};
+
+Contest reachContest(const std::shared_ptr<Arm>& arm) {
+  const auto drag = std::make_shared<Drag>(*arm);
+  Contest contest{"reach_question", "KDL ChainIkSolverPos_LMA with restarts, 24 rolls, no collisions", {}, {}, 1, 10, false, {}};
+  contest.ours = [drag] { benchmark::DoNotOptimize(drag->ours()); };
+  contest.theirs = [drag, arm] { benchmark::DoNotOptimize(drag->theirs(*arm)); };
+  contest.accuracy = [drag, arm] {
+    const int ours = drag->ours(), theirs = drag->theirs(*arm);
+    return Accuracy{ours > 0 && ours < Drag::kPoints, std::to_string(ours) + " of " + std::to_string(Drag::kPoints) +
+                                                          " points of the drag are reached (KDL: " + std::to_string(theirs) + ", square to the sight only)"};
+  };
+  return contest;
+}
+
 }  // namespace
 
 std::vector<Contest> robotContests() {
@@ -293,7 +359,7 @@ std::vector<Contest> robotContests() {
   const auto queries = std::make_shared<Queries>(*arm);
   const auto seven = std::make_shared<Arm>(planning::loadWorkcell(resourcePath("robots/seven_joints/workcell.yaml").value()).value());
   return {kinematicsContest(arm, queries), ikContest("ik", arm, queries), ikContest("ik_seven_joints", seven, std::make_shared<Queries>(*seven)),
-          cartesianContest(arm)};
+          cartesianContest(arm), reachContest(arm)};
 }
 
 }  // namespace longarm::benchmarks

@@ -16,7 +16,8 @@ struct MacroCase {
   const char* object;            // whose frame the points are in
   std::vector<Vector3d> points;  // [m]
   std::map<std::string, double> settings = {};
-  bool touches = false;  // the object may be touched
+  bool touches = false;  // the object must be touched, and nothing else
+  double moves = 0;      // the object must have moved by so much at the end [m]
 };
 
 void PrintTo(const MacroCase& c, std::ostream* out) { *out << c.macro << " in " << c.scenario; }
@@ -28,7 +29,7 @@ const std::vector<Vector3d> kHandle{{0, 0, 0.10}, {0, 0, -0.10}}, kPipe{{0, 0, -
     kPanelTop{{-0.01, 0.12, 0.2}, {-0.01, 0.12, 0}, {-0.01, -0.12, 0}},
     kCrate{{-0.035, 0.06, 0.05}, {0.035, 0.06, 0.05}, {-0.035, -0.06, 0.05}, {-0.035, 0.06, -0.05}},
     kPackage{{-0.13, 0.18, 0.12}, {0.13, 0.18, 0.12}, {-0.13, -0.18, 0.12}, {-0.13, 0.18, -0.12}},
-    kCrateEdge{{-0.035, 0.06, 0.05}, {-0.035, 0.06, -0.05}}, kCrateTop{{0, 0, 0.05}}, kPanelMiddle{{-0.01, 0, 0}};
+    kPin{{0, 0, -0.07}, {0, 0, 0.07}}, kCrateTop{{0, 0, 0.05}}, kPanelMiddle{{-0.01, 0, 0}};
 
 std::vector<MacroCase> everyMacro() {
   return {
@@ -44,11 +45,12 @@ std::vector<MacroCase> everyMacro() {
       {"place_here", "crate", ActionId::kToolPoint, "table", {{0, -0.15, 0.015}}},
       {"move_parallel", "pull_drawer", ActionId::kToolLine, "handle", kHandle},
       {"aim_along_axis", "turn_valve", ActionId::kToolLine, "axle", kAxle},
-      {"insert_along", "crate", ActionId::kToolLine, "crate", kCrateEdge, {{"depth", 0.005}}, true},
+      {"insert_along", "hatch", ActionId::kToolLine, "pin", kPin, {{"depth", 0.05}}},
       {"extract_along", "grab_pipe", ActionId::kToolLine, "pipe", kPipe},
       {"follow_perimeter", "scan_panel", ActionId::kToolPlane, "panel", kPanel, {{"inset", 0.08}}},
-      {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {}, true},
-      {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate},
+      {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}}, true},
+      {"wipe", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}, {"width", 0.06}}, true},
+      {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate, {{"distance", 0.05}}, false, 0.035},
       {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}}};
 }
 
@@ -58,6 +60,10 @@ class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInter
     const MacroCase& c = GetParam();
     const QString macro = QString::fromLatin1(c.macro);
     openScenario(c.scenario);
+    if (HasFatalFailure()) return;
+    const auto at_first = op->look();
+    ASSERT_TRUE(at_first.ok()) << at_first.error().message;
+    const Vector3d before = at_first->objects.at(c.object).translation();
     if (!HasFatalFailure()) sketch(c.tool, c.object, c.points);
     if (!HasFatalFailure()) planIt(macro, c.settings);
     if (!HasFatalFailure()) preview(macro);
@@ -68,8 +74,47 @@ class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInter
     if (!HasFatalFailure()) finish();
     if (HasFatalFailure()) return;
     EXPECT_TRUE(contacts(c.touches ? c.object : "").empty()) << judge().dump();
+    if (c.touches) EXPECT_FALSE(contacts().empty()) << "nothing was pressed";
+    if (std::string(c.macro) == "insert_along") EXPECT_GT(toolNow().x(), 0.73) << "through the opening";
+    if (c.moves == 0) return;
+    const auto now = op->look();
+    ASSERT_TRUE(now.ok()) << now.error().message;
+    const Vector3d way = now->objects.at(c.object).translation() - before;
+    EXPECT_GT(way.head<2>().norm(), c.moves) << "it was not pushed";
+    EXPECT_NEAR(way.z(), 0, 2e-3) << "it slid";
   }
 };
+
+// A turn further than the arm reaches: it lets go by itself, goes back, and takes the next piece of the rim.
+class RegripWindow : public tests::PlayedWindow {};
+
+TEST_F(RegripWindow, AValveIsTurnedFarByGrippingAgain) {
+  openScenario("turn_valve");
+  if (!HasFatalFailure()) sketch(ActionId::kToolLine, "rim_1", {{0, 0, 0.06}, {0, 0, -0.06}});
+  if (!HasFatalFailure()) planIt(QStringLiteral("approach_from_side"), {{"radius", 0.011}});
+  if (HasFatalFailure()) return;
+  demand(op->resetStop());
+  demand(op->openGripper());
+  finish();
+  if (HasFatalFailure()) return;
+  bench->robot().setGripper(bench->document().workcell()->gripper->closed);
+  ASSERT_TRUE(ui::SimulatedHand::waitFor([this] { return bench->robot().runtime()->holding(); }, 20)) << whyNot();
+  sketch(ActionId::kToolLine, "axle", kAxle);
+  const double far = 5 * M_PI / 3;
+  if (!HasFatalFailure()) planIt(QStringLiteral("move_around_axis"), {{"angle", far}, {"regrip", 1}, {"pitch", M_PI / 3}});
+  if (HasFatalFailure()) return;
+  preview(QStringLiteral("move_around_axis_regrip"));
+  const auto& stages = bench->document().plan()->plan.stages;
+  const auto steps = std::count_if(stages.begin(), stages.end(), [](const auto& stage) { return stage.gripper.has_value(); });
+  ASSERT_GE(steps, 2) << "this far takes more than one grip";
+  if (bench->play().state().ask) bench->play().acceptAccuracy();
+  finish();
+  const auto told = judge();
+  EXPECT_NEAR(told.at("mechanisms").at("wheel").get<double>(), -far, 0.08) << "right-handed about the axle as it was marked: " << whyNot();
+  EXPECT_EQ(told.at("held").get<std::string>().empty(), false);
+  EXPECT_NE(told.at("held").get<std::string>(), "rim_1") << "another piece of the rim";
+  EXPECT_TRUE(contacts().empty()) << told.dump();
+}
 
 TEST_P(MacroWindow, IsSketchedPlannedPlayedPausedBackedUpCorrectedAndFinished) { playThrough(); }
 

@@ -144,6 +144,12 @@ class PlayedWindow : public WindowFixture {
     bench->play().setSpeed(2);
     ASSERT_TRUE(playUntil([this] { return player() == planning::PlayerState::kDone; })) << whyNot();
   }
+  Eigen::Vector3d toolNow() const {
+    const auto& cell = *bench->document().workcell();
+    Eigen::VectorXd q = cell.model->neutral();
+    cell.model->assign(*bench->robot().runtime()->jointState(), q);
+    return cell.model->forward(q, *cell.model->linkIndex(cell.arm.tip_link)).translation();
+  }
   nlohmann::json judge() const {
     const auto answer = bench->robot().runtime()->callService("/virtual_robot/truth", "{}");
     EXPECT_TRUE(answer.ok()) << answer.error().message;
