@@ -18,6 +18,8 @@ struct MacroCase {
   std::map<std::string, double> settings = {};
   bool touches = false;  // the object must be touched, and nothing else
   double moves = 0;      // the object must have moved by so much at the end [m]
+  // What stands about unmarked: the console, which knows only what was marked, cannot keep clear of it.
+  std::set<std::string> untold = {};
 };
 
 void PrintTo(const MacroCase& c, std::ostream* out) { *out << c.macro << " in " << c.scenario; }
@@ -42,7 +44,7 @@ std::vector<MacroCase> everyMacro() {
       {"touch", "scan_panel", ActionId::kToolPoint, "panel", kPanelMiddle, {{"gap", 0.02}}},
       {"look_at", "crate", ActionId::kToolPoint, "crate", kCrateTop},
       {"move_above", "crate", ActionId::kToolPoint, "crate", kCrateTop},
-      {"place_here", "crate", ActionId::kToolPoint, "table", {{0, -0.15, 0.015}}},
+      {"place_here", "crate", ActionId::kToolPoint, "table", {{0, -0.15, 0.015}}, {}, false, 0, {"table"}},
       {"move_parallel", "pull_drawer", ActionId::kToolLine, "handle", kHandle},
       {"aim_along_axis", "turn_valve", ActionId::kToolLine, "axle", kAxle},
       {"insert_along", "hatch", ActionId::kToolLine, "pin", kPin, {{"depth", 0.05}}},
@@ -50,8 +52,8 @@ std::vector<MacroCase> everyMacro() {
       {"follow_perimeter", "scan_panel", ActionId::kToolPlane, "panel", kPanel, {{"inset", 0.08}}},
       {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}}, true},
       {"wipe", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}, {"width", 0.06}}, true},
-      {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate, {{"distance", 0.05}}, false, 0.035},
-      {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}}};
+      {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate, {{"distance", 0.05}}, false, 0.035, {"table"}},
+      {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}, false, 0, {"pallet", "ground"}}};
 }
 
 class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInterface<MacroCase> {
@@ -73,7 +75,9 @@ class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInter
     playAndCorrect();
     if (!HasFatalFailure()) finish();
     if (HasFatalFailure()) return;
-    EXPECT_TRUE(contacts(c.touches ? c.object : "").empty()) << judge().dump();
+    std::set<std::string> may = c.untold;
+    if (c.touches) may.insert(c.object);
+    EXPECT_TRUE(contacts(may).empty()) << judge().dump();
     if (c.touches) EXPECT_FALSE(contacts().empty()) << "nothing was pressed";
     if (std::string(c.macro) == "insert_along") EXPECT_GT(toolNow().x(), 0.73) << "through the opening";
     if (c.moves == 0) return;

@@ -155,12 +155,13 @@ class PlayedWindow : public WindowFixture {
     EXPECT_TRUE(answer.ok()) << answer.error().message;
     return answer ? nlohmann::json::parse(*answer) : nlohmann::json::object();
   }
-  // What touched what, but for the robot with this object.
-  std::vector<std::string> contacts(const std::string& but_with = {}) const {
+  // What touched what, but for the robot with these objects.
+  std::vector<std::string> contacts(const std::set<std::string>& but_with = {}) const {
     std::vector<std::string> out;
-    for (const auto& contact : judge().at("contacts")) {
+    const nlohmann::json told = judge();   // lives through the loop
+    for (const auto& contact : told.at("contacts")) {
       const std::string a = contact.at("a"), b = contact.at("b");
-      if (but_with.empty() || (a != but_with && b != but_with)) out.push_back(a + " and " + b);
+      if (but_with.count(a) == 0 && but_with.count(b) == 0) out.push_back(a + " and " + b);
     }
     return out;
   }

@@ -156,7 +156,7 @@ TEST(TimeBar, ShowsClearanceOverTimeAndTellsItInMillimetres) {
   const QImage with = bar.grab().toImage();
   const auto columnOf = [&](double t, const QColor& color) {
     int high = 0;
-    for (int y = 0; y < 16; ++y) high += with.pixelColor(static_cast<int>(bar.xOf(t)), y) == color;
+    for (int y = 0; y < 16; ++y) high += with.pixelColor(static_cast<int>(bar.xOf(t)), y).rgb() == color.rgb();
     return high;
   };
   const int free = columnOf(1, clearanceColour(planning::ClearanceBand::kFree)), near = columnOf(4, clearanceColour(planning::ClearanceBand::kNear)),
