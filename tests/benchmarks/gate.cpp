@@ -117,10 +117,10 @@ std::string amount(const Outcome& outcome, double value) {
 }  // namespace
 
 void printTable(const std::vector<Outcome>& outcomes, std::ostream& out) {
-  out << std::left << std::setw(16) << "name" << std::setw(12) << "ours" << std::setw(12) << "peer" << std::setw(9)
+  out << std::left << std::setw(18) << "name" << std::setw(12) << "ours" << std::setw(12) << "peer" << std::setw(9)
       << "ratio" << std::setw(8) << "gate" << std::setw(10) << "moonshot" << std::setw(8) << "" << "accuracy\n";
   for (const auto& o : outcomes) {
-    out << std::setw(16) << o.name << std::setw(12) << amount(o, o.ours_s) << std::setw(12) << amount(o, o.peer_s)
+    out << std::setw(18) << o.name << std::setw(12) << amount(o, o.ours_s) << std::setw(12) << amount(o, o.peer_s)
         << std::setw(9) << formatFixed(o.ratio, 1) << std::setw(8) << formatNumber(o.gate) << std::setw(10)
         << formatNumber(o.moonshot) << std::setw(8) << (o.passed ? "passed" : "FAILED") << o.accuracy.text << "; peer: "
         << o.peer << "\n";
