@@ -69,7 +69,8 @@ MacroForm::MacroForm(session::PlanController& plans, QWidget* parent) : QWidget(
 void MacroForm::setMacro(const std::optional<session::MacroRow>& row) {
   const bool same = row.has_value() == m_row.has_value() && (!row || row->name == m_row->name);
   m_row = row;
-  if (!same) rebuild();
+  if (!same) return rebuild();
+  showValues();                            // defaults that follow the robot have gone on
 }
 
 QDoubleSpinBox* MacroForm::number(const QString& parameter) const {

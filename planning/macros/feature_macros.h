@@ -34,5 +34,6 @@ std::unique_ptr<Macro> makeWipe();
 std::unique_ptr<Macro> makeGraspByFaces();
 std::unique_ptr<Macro> makePushFace();
 std::unique_ptr<Macro> makeScanFaces();
+std::unique_ptr<Macro> makeLookAround();
 
 }  // namespace longarm::planning

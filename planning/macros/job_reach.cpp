@@ -8,6 +8,25 @@
 #include "planning/macros/task_search.h"
 
 namespace longarm::planning {
+namespace {
+
+// The first way of so many parts as are needed; the middle one, which lies on the arm's side, is looked at first.
+std::optional<ReachSeed> glanceAtParts(TaskSearch& search, const ToolJob& job, const Eigen::VectorXd& from, const ReachSeed& seed) {
+  if (job.least_parts <= 1) return search.glance(job.parts.front(), from, seed);
+  std::optional<ReachSeed> first;
+  std::size_t found = 0;
+  const std::size_t count = job.parts.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t step = (i + 1) / 2, part = (count / 2 + (i % 2 == 0 ? step : count - step)) % count;
+    const auto way = search.glance(job.parts[part], from, first ? ReachSeed{} : seed);
+    if (!way) continue;
+    if (!first) first = way;
+    if (++found >= job.least_parts) return first;
+  }
+  return {};
+}
+
+}  // namespace
 
 ReachAnswer reachOfJob(PlanningRun& run, const ToolJob& job, const ReachSeed& seed) {
   using Level = ReachAnswer::Level;
@@ -19,7 +38,7 @@ ReachAnswer reachOfJob(PlanningRun& run, const ToolJob& job, const ReachSeed& se
   const ArmSpace free(run.workcell(), *worlds.free, q), touching(run.workcell(), *worlds.touching, q);
   TaskSearch search(run, free, touching);
   const TaskPart& part = job.parts.front();
-  const auto found = search.glance(part, run.start(), seed);
+  const auto found = glanceAtParts(search, job, run.start(), seed);
   const TaskRefusals& refusals = search.refusals();
   if (found) {
     answer.seed = *found;

@@ -15,7 +15,7 @@ namespace longarm::planning {
 
 struct ToolJob;
 
-/// Looks at entries and coarse stations of the job's first part only, first in the way that `seed` did it: what was
+/// Looks at entries and coarse stations of the job's first part only (of as many as are needed, where that is several), first in the way that `seed` did it: what was
 /// reached a moment ago and moved a little takes one inverse kinematics per station.
 /// kReached: the best way; kStrained: a less preferred one, or none found before the run's deadline; kNot: no way.
 ReachAnswer reachOfJob(PlanningRun& run, const ToolJob& job, const ReachSeed& seed);

@@ -5,24 +5,15 @@
 #include <Eigen/Dense>
 
 #include "core/text.h"
+#include "planning/macros/camera_look.h"
 #include "planning/macros/feature_macro.h"
 #include "planning/macros/feature_macros.h"
 #include "planning/macros/tool_directions.h"
-#include "planning/macros/tool_shape.h"
 
 namespace longarm::planning {
 namespace {
 
 constexpr double kMostTilt = 75 * M_PI / 180;
-constexpr double kRollStep = M_PI / 12;
-
-const CameraSpec* armCamera(const Workcell& cell) {
-  for (const auto& camera : cell.cameras) {
-    const auto link = cell.model->linkIndex(camera.link);
-    if (link && beyondArm(cell, *link)) return &camera;
-  }
-  return nullptr;
-}
 
 int qIndexOf(const RobotModel& model, const std::string& name) {
   const auto joint = model.jointIndex(name);
@@ -31,7 +22,7 @@ int qIndexOf(const RobotModel& model, const std::string& name) {
 
 class LookAt final : public FeatureMacro {
  public:
-  explicit LookAt(const Workcell& workcell) : m_arm(armCamera(workcell) != nullptr) {}
+  explicit LookAt(const Workcell& workcell) : m_arm(hasArmCamera(workcell)) {}
 
   MacroInfo info() const override {
     return {"look_at", "Look At", "Turns a camera to the marked point: the arm's own, or one on a pan-tilt.",
@@ -49,24 +40,13 @@ class LookAt final : public FeatureMacro {
 
  private:
   static Status moveArm(MacroSetup& setup) {
-    const Workcell& cell = setup.run.workcell();
-    const CameraSpec* camera = armCamera(cell);
-    if (camera == nullptr) return {ErrorCode::kInvalidInput, "the workcell has no camera on the arm: set pan_tilt to 1"};
-    const Eigen::VectorXd& q = setup.run.context().start;
-    const Pose X_RC = cell.model->forward(q, *cell.model->linkIndex(camera->link));
-    const Pose X_CT = X_RC.inverse() * setup.X_RT;
+    const auto eye = armEyeOf(setup.run.workcell(), setup.run.context().start, setup.X_RT);
+    if (!eye) return {ErrorCode::kInvalidInput, "the workcell has no camera on the arm: set pan_tilt to 1"};
     const Eigen::Vector3d p = setup.feature.points[0];
-    const Eigen::Vector3d view = p - X_RC.translation();
+    const Eigen::Vector3d view = p - eye->X_RC.translation();
     TaskPart part;
-    for (const auto& direction : directionsAround(view.norm() > 1e-3 ? view : Eigen::Vector3d(X_RC.linear().col(2)), kMostTilt)) {
-      const Eigen::Vector3d right = direction.z.cross(setup.run.up());       // of a level picture
-      const Eigen::Matrix3d R = toolRotation(direction.z, right.norm() > 0.1 ? right : Eigen::Vector3d(X_RC.linear().col(0)));
-      for (const double roll : anglesAround(M_PI, kRollStep)) {
-        ToolTask task;
-        task.X_entry = poseAt(p - setup.arguments["stand_off"] * direction.z, R) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) * X_CT;
-        task.preference = 4 * direction.ring + static_cast<int>(std::abs(roll) / M_PI * 3.99);
-        part.tasks.push_back(std::move(task));
-      }
+    for (const auto& direction : directionsAround(view.norm() > 1e-3 ? view : Eigen::Vector3d(eye->X_RC.linear().col(2)), kMostTilt)) {
+      for (auto& task : lookTasks(*eye, p, direction.z, setup.arguments["stand_off"], setup.run.up(), 4 * direction.ring)) part.tasks.push_back(std::move(task));
     }
     setup.job.parts.push_back(std::move(part));
     return {};

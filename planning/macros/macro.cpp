@@ -5,6 +5,7 @@
 #include "planning/macros/canned_motion.h"
 #include "planning/macros/feature_macros.h"
 #include "planning/macros/grab_pipe.h"
+#include "planning/macros/move_to.h"
 
 namespace longarm::planning {
 
@@ -22,6 +23,7 @@ std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
     const auto pose = workcell.poses.find(name);
     if (pose != workcell.poses.end()) out.push_back(std::make_unique<CannedMotion>(name, pose->second));
   }
+  out.push_back(std::make_unique<MoveTo>(workcell));
   out.push_back(makeLookAt(workcell));
   out.push_back(makeTouch());
   out.push_back(makeMoveAbove());
@@ -41,6 +43,7 @@ std::vector<std::unique_ptr<Macro>> makeMacros(const Workcell& workcell) {
   out.push_back(makeGraspByFaces());
   out.push_back(makePushFace());
   out.push_back(makeScanFaces());
+  out.push_back(makeLookAround());
   return out;
 }
 

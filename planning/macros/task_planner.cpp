@@ -116,20 +116,33 @@ bool TaskPlanner::search(TaskSearch& search, const ArmSpace& free) {
     } else if (!part.optional) {
       return false;
     } else {
-      m_run.plan().notes.push_back(part.name + " cannot be done from here and is left out.");
+      leaveOut(part);
     }
     if (interrupted()) return false;
   }
-  if (doable.empty()) return false;
+  m_possible = doable.size();
+  if (doable.size() < m_job.least_parts) {
+    if (m_job.least_parts > 1) m_failed_part = m_job.parts.size() / 2;
+    return false;
+  }
   Eigen::VectorXd from = m_run.start();
+  std::size_t done = 0;
   for (const std::size_t k : doable) {
     m_failed_part = k;
     m_any_goal = false;
-    if (!searchPart(search, free, k, from)) return false;
-    from = m_run.plan().trajectory.points.back().positions;
+    if (searchPart(search, free, k, from)) {
+      from = m_run.plan().trajectory.points.back().positions;
+      ++done;
+    } else if (interrupted() || !m_job.parts[k].optional || m_any_avoided) {
+      return false;
+    } else {
+      leaveOut(m_job.parts[k]);
+    }
   }
-  return true;
+  return done >= m_job.least_parts;
 }
+
+void TaskPlanner::leaveOut(const TaskPart& part) { m_run.plan().notes.push_back(part.name + " cannot be done from here and is left out."); }
 
 bool TaskPlanner::searchPart(TaskSearch& search, const ArmSpace& free, std::size_t k, const Eigen::VectorXd& from) {
   const TaskPart& part = m_job.parts[k];
@@ -138,7 +151,7 @@ bool TaskPlanner::searchPart(TaskSearch& search, const ArmSpace& free, std::size
     m_run.progress(done + 0.1 / static_cast<double>(m_job.parts.size()), "looking for ways to hold the tool");
     const std::size_t last = endOfGroup(part, first);
     std::vector<FollowedTask> found = search.find(part, first, last, from, enoughFor(part) + m_run.context().avoid.size());
-    if (k == 0) dropAvoided(found);
+    if (m_run.plan().entry.size() == 0) dropAvoided(found);
     first = last;
     if (found.empty() || interrupted()) continue;
     m_any_goal = true;
@@ -228,19 +241,34 @@ Plan TaskPlanner::explain(const TaskRefusals& refusals, const TaskPart& part, co
   m_run.plan().failed_stage = part.tasks.front().stages.empty() ? "transit" : part.tasks.front().stages.front().name;
   if (refusals.colliding > 0) {
     adviseObstacle(m_run, refusals.contact, target());
-    adviseDriving(m_run, free, waysOf(part));
+    if (!m_job.in_base_frame) adviseDriving(m_run, free, waysOf(part));
     return m_run.fail(PlanStatus::kGoalInCollision,
-                      "However the tool is held at " + m_job.subject + ", the arm would collide: " + refusals.contact.sentence() +
-                          ". Clear the space there, give more stand-off, or drive to another side.",
+                      fewParts() + "However the tool is held at " + m_job.subject + ", the arm would collide: " + refusals.contact.sentence() +
+                          ". Clear the space there, " + (m_job.in_base_frame ? "or take another pose." : "give more stand-off, or drive to another side."),
                       0, pose);
   }
+  return explainReach(fewParts(), pose, part, free);
+}
+
+// "Only 1 of 8 (view 1 ... view 8) can be done, 2 are needed. "; empty where that is not why.
+std::string TaskPlanner::fewParts() const {
+  if (m_possible == 0 || m_possible >= m_job.least_parts) return {};
+  return "Only " + std::to_string(m_possible) + " of " + std::to_string(m_job.parts.size()) + " (" + m_job.parts.front().name + " ... " +
+         m_job.parts.back().name + ") can be done, " + std::to_string(m_job.least_parts) + " are needed. ";
+}
+
+Plan TaskPlanner::explainReach(const std::string& few, const std::optional<Pose>& pose, const TaskPart& part, const ArmSpace& free) {
   const Pose wanted = pose.value_or(part.tasks.front().X_entry);
   const Reach reach = reachOf(m_run.workcell(), m_q);
-  const bool advised = adviseDriving(m_run, free, waysOf(part));
-  return m_run.fail(PlanStatus::kUnreachable,
-                    "It is out of reach: " + (advised ? reachFacts(reach, m_job.subject, m_job.place) + ", or the hand cannot be turned so there; drive nearer"
-                                                      : reachAdvice(reach, m_job.subject, m_job.place)) + ".",
-                    0, wanted);
+  std::string why;
+  if (m_job.in_base_frame) {
+    why = reachFacts(reach, m_job.subject, m_job.place) + ", or the hand cannot be turned so there: take a pose nearer to the arm, or turn the tool otherwise";
+  } else if (adviseDriving(m_run, free, waysOf(part))) {
+    why = reachFacts(reach, m_job.subject, m_job.place) + ", or the hand cannot be turned so there; drive nearer";
+  } else {
+    why = reachAdvice(reach, m_job.subject, m_job.place);
+  }
+  return m_run.fail(PlanStatus::kUnreachable, few + "It is out of reach: " + why + ".", 0, wanted);
 }
 
 Plan TaskPlanner::explainStop(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free) {

@@ -23,6 +23,9 @@ struct ToolJob {
   std::vector<TaskPart> parts;           ///< In order; joined by free motions.
   std::vector<WorldObject> obstacles;    ///< Of the feature itself.
   std::vector<std::string> touchable;    ///< Objects that touching stages may touch with the gripper's links.
+  /// So many parts at least, where they are optional.  More than 1: why not is told of the part in the middle.
+  std::size_t least_parts = 1;
+  bool in_base_frame = false;            ///< The place goes with the base: driving brings it no nearer.
   bool open_gripper = false;             ///< Planned with the gripper open.
   std::optional<WorldObject> grasped;    ///< What is between the fingers in the end.
   double touch_padding = 0.002;          ///< Around everything else in touching stages [m].
@@ -59,6 +62,7 @@ class TaskPlanner {
   static std::vector<std::vector<Pose>> waysOf(const TaskPart& part);
   void dropAvoided(std::vector<FollowedTask>& found);
   Plan explain(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free);
+  Plan explainReach(const std::string& few, const std::optional<Pose>& pose, const TaskPart& part, const ArmSpace& free);
   Plan explainStop(const TaskRefusals& refusals, const TaskPart& part, const ArmSpace& free);
   std::string target() const { return m_job.obstacles.empty() ? std::string() : m_job.obstacles.front().name; }
   bool interrupted() const { return m_run.cancelled() || m_run.timeUp(); }
@@ -66,7 +70,10 @@ class TaskPlanner {
   PlanningRun& m_run;
   const ToolJob& m_job;
   Eigen::VectorXd m_q;
-  std::size_t m_failed_part = 0;
+  void leaveOut(const TaskPart& part);
+  std::string fewParts() const;
+
+  std::size_t m_failed_part = 0, m_possible = 0;
   bool m_any_goal = false;               // of the part that failed
   bool m_any_avoided = false;
 };

@@ -8,7 +8,6 @@
 namespace longarm::planning {
 namespace {
 
-constexpr int kRestarts = 5;             // of the inverse kinematics, per entry pose
 constexpr double kDistinct = 0.1;        // postures closer than this are one [rad]
 constexpr double kRollStep = M_PI / 12;
 constexpr double kRungStep = 0.04;       // [m]
@@ -39,9 +38,10 @@ struct TaskSearch::Rungs {
   Ladder ladder;
   std::vector<std::size_t> stage;        // of each rung
   std::vector<double> way;               // within its stage [m]
+  int restarts;                          // of the inverse kinematics at the first
   std::vector<std::size_t> first;        // rung at which each stage starts (shared with the end of the one before)
 
-  explicit Rungs(const ToolTask& task) {
+  explicit Rungs(const ToolTask& task) : restarts(task.restarts) {
     ladder.X_RT.push_back(task.stages.empty() ? task.X_entry : task.stages.front().path.start());
     stage.push_back(0);
     way.push_back(0);
@@ -100,7 +100,7 @@ const ArmSpace& TaskSearch::spaceOf(const ToolStage& stage) const {
 void TaskSearch::addPostures(const Pose& X_RT, double roll, const Rungs& rungs, const Eigen::VectorXd& from,
                              std::vector<Rough>& out) {
   IkOptions options;
-  options.restarts = kRestarts;
+  options.restarts = rungs.restarts;
   options.seed = m_run.context().seed;
   const auto postures = m_solver.solveAll(rolled(X_RT, roll), from, options, kDistinct);
   if (!postures) {

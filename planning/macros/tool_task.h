@@ -32,6 +32,7 @@ struct ToolTask {
   std::vector<ToolStage> stages;
   int preference = 0;                    ///< Lower ones are tried first; equal ones compete.
   bool roll_free = false;                ///< Any turn about tool z will do, and it may change on the way.
+  int restarts = 5;                      ///< Of the inverse kinematics, per pose of the entry.
   std::string note;                      ///< Told to the operator when this way is taken.
 };
 

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "planning/macros/accuracy.h"
 #include "planning/macros/macro_arguments.h"
+#include "planning/macros/standing_defaults.h"
 #include "session/document/standing_items.h"
 
 namespace longarm::session {
@@ -22,6 +23,32 @@ namespace {
 
 const std::string& rootFrame(const planning::Workcell& workcell) {
   return workcell.model->links()[static_cast<std::size_t>(workcell.model->rootLink())].name;
+}
+
+// The parameters with the defaults that hold where the robot stands; those that depend on nothing without joints.
+std::vector<planning::MacroParameter> parametersNow(const planning::Macro& macro, const planning::Workcell& workcell, const JointState* joints) {
+  std::vector<planning::MacroParameter> parameters = macro.info().parameters;
+  const auto* standing = dynamic_cast<const planning::StandingDefaults*>(&macro);
+  if (standing == nullptr || joints == nullptr) return parameters;
+  Eigen::VectorXd q = workcell.model->neutral();
+  workcell.model->assign(*joints, q);
+  const auto now = standing->defaultsAt(workcell, q);
+  for (auto& parameter : parameters) {
+    const auto found = now.find(parameter.name);
+    if (found != now.end()) parameter.value = found->second;
+  }
+  return parameters;
+}
+
+// "Now: x 0.512 m, ..., yaw 90.0 deg."
+QString standsAt(const std::vector<planning::MacroParameter>& parameters) {
+  QStringList out;
+  for (const auto& p : parameters) {
+    const bool turn = p.unit == "rad";
+    out << PlanController::tr("%1 %2 %3").arg(QString::fromStdString(p.name), QString::number(turn ? p.value * 180 / M_PI : p.value, 'f', turn ? 1 : 3),
+                                              turn ? QStringLiteral("deg") : QString::fromStdString(p.unit));
+  }
+  return PlanController::tr("Now: %1.").arg(out.join(QStringLiteral(", ")));
 }
 
 }  // namespace
@@ -92,6 +119,7 @@ QString PlanController::whyNot(const planning::MacroInfo& info) const {
 std::vector<MacroRow> PlanController::macros() const {
   std::vector<MacroRow> rows;
   if (!m_macros) return rows;
+  const auto joints = m_joints ? m_joints() : nullptr;
   for (const auto& macro : *m_macros) {
     const planning::MacroInfo info = macro->info();
     MacroRow row;
@@ -101,7 +129,8 @@ std::vector<MacroRow> PlanController::macros() const {
     row.takes = info.takes;
     row.reason = whyNot(info);
     row.enabled = row.reason.isEmpty();
-    row.parameters = info.parameters;
+    row.parameters = parametersNow(*macro, *m_document.workcell(), joints.get());
+    if (joints && dynamic_cast<const planning::StandingDefaults*>(macro.get()) != nullptr) row.advice = standsAt(row.parameters);
     if (info.uses_up && !(m_up && m_up())) {
       row.advice = tr("Above means along the base's own z: the robot does not tell which way is up (imu in its workcell file).");
     }
@@ -134,7 +163,8 @@ std::map<std::string, double> PlanController::arguments(const QString& name) con
   const planning::Macro* found = macro(name);
   if (found == nullptr) return values;
   const planning::MacroInfo info = found->info();
-  for (const auto& parameter : info.parameters) values[parameter.name] = parameter.value;
+  const auto joints = m_joints ? m_joints() : nullptr;
+  for (const auto& parameter : parametersNow(*found, *m_document.workcell(), joints.get())) values[parameter.name] = parameter.value;
   const auto set = m_settings.find(info.name);
   if (set == m_settings.end()) return values;
   for (const auto& [parameter, value] : set->second) {

@@ -14,6 +14,7 @@
 #include "planning/macros/feature_geometry.h"
 #include "planning/macros/reach_advice.h"
 #include "planning/macros/tool_shape.h"
+#include "planning/motion/ladder.h"
 #include "planning/robot/ik.h"
 #include "tests/planning/macro_scene.h"
 
@@ -72,7 +73,10 @@ class Queries {
     if (m_macro == "aim_along_axis" || m_macro == "insert_along") return anAxis(query, scene);
     if (m_macro == "place_disruptor") return anEdge(query);
     if (m_macro == "surface_scan" || m_macro == "follow_perimeter" || m_macro == "press" || m_macro == "wipe") return aSurface(query);
-    if (m_macro == "grasp_by_faces" || m_macro == "push_face" || m_macro == "scan_faces") return aBox(query, scene);
+    if (m_macro == "grasp_by_faces" || m_macro == "push_face" || m_macro == "scan_faces" || m_macro == "look_around") {
+      return aBox(query, scene);
+    }
+    if (m_macro == "move_to") return aPose(query, scene);
     return fromHere(query, scene);
   }
 
@@ -134,8 +138,20 @@ class Queries {
     std::vector<Vector3d> points{o};
     for (int k = 0; k < 3; ++k) points.push_back(o + 2 * half[k] * R.col(k));
     query.feature = featureOf(FeatureKind::kTriad, points);
-    if (m_macro != "scan_faces") query.touched = {"mark"};
+    if (m_macro != "scan_faces" && m_macro != "look_around") query.touched = {"mark"};
     if (m_macro == "push_face" && !canHold(query, pushes(query), scene)) return {};
+    return query;
+  }
+
+  // Anywhere before the robot, the tool leaning up to 60 degrees from level or straight down, however it is rolled.
+  std::optional<Query> aPose(Query query, const std::vector<WorldObject>& scene) {
+    const Vector3d p = tests::randomPlace(m_random), down = -Vector3d::UnitZ(), away = Vector3d(p.x(), p.y(), 0).normalized();
+    const Vector3d z = (m_random.unit() < 0.5 ? down : away) + std::tan(m_random.uniform(0, M_PI / 3)) * tests::randomDirection(m_random);
+    const Pose pose = rolled(poseAt(p, rotationWithZ(z.normalized())), m_random.uniform(-M_PI, M_PI));
+    const Eigen::Matrix3d R = pose.linear();
+    query.arguments = {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}, {"roll", std::atan2(R(2, 1), R(2, 2))},
+                       {"pitch", std::asin(std::clamp(-R(2, 0), -1.0, 1.0))}, {"yaw", std::atan2(R(1, 0), R(0, 0))}};
+    if (!canHold(query, pose, scene, false)) return {};
     return query;
   }
 
@@ -160,13 +176,13 @@ class Queries {
   }
 
   // Whether for all poses of one of the ways there is some posture clear of the scene that holds the tool there,
-  // whatever its roll: looked for much longer than planning does.  Without them the query is not feasible.
+  // whatever its roll (or just so): looked for much longer than planning does.  Without them the query is not feasible.
   bool canHold(const Query& query, const std::vector<std::vector<Pose>>& ways, const std::vector<WorldObject>& scene) const {
     return std::any_of(ways.begin(), ways.end(), [&](const std::vector<Pose>& poses) {
       return std::all_of(poses.begin(), poses.end(), [&](const Pose& pose) { return canHold(query, pose, scene); });
     });
   }
-  bool canHold(const Query& query, const Pose& pose, const std::vector<WorldObject>& scene) const {
+  bool canHold(const Query& query, const Pose& pose, const std::vector<WorldObject>& scene, bool roll_free = true) const {
     CollisionOptions options;
     options.moving = movingIndices(*m_cell.model, m_cell.arm);
     static const AllowedPairs allowed = allowedPairs(m_cell.model);
@@ -175,7 +191,7 @@ class Queries {
     solver.setLimits(m_cell.arm_limits.lower, m_cell.arm_limits.upper);
     IkOptions thorough;
     thorough.restarts = 400;
-    thorough.free[2] = true;
+    thorough.free[2] = roll_free;
     const Eigen::VectorXd arm = groupPositions(*m_cell.model, m_cell.arm, query.start);
     const auto all = solver.solveAll(pose, arm, thorough);
     return all && std::any_of(all->begin(), all->end(), [&](const IkSolution& one) {
@@ -268,7 +284,8 @@ Tally run(const std::string& name, int queries, unsigned seed) {
     context.objects = scene;
     context.seed = static_cast<unsigned>(i + 1);
     context.budget_s = 60;               // measured, not cut off: machines differ
-    const Plan plan = tests::macroOf(name).plan(context, &query.feature);
+    const Macro& macro = tests::macroOf(name);
+    const Plan plan = macro.plan(context, macro.info().takes ? &query.feature : nullptr);
     ++tally.queries;
     tally.seconds.push_back(plan.planning_seconds);
     if (!plan.ok()) {
@@ -293,10 +310,10 @@ Tally run(const std::string& name, int queries, unsigned seed) {
   return tally;
 }
 
-const std::vector<std::string>& featureMacros() {
-  static const std::vector<std::string> names{"look_at", "touch", "move_above", "place_here", "move_around_axis", "approach_from_side", "move_parallel",
+const std::vector<std::string>& everyMacro() {
+  static const std::vector<std::string> names{"move_to", "look_at", "touch", "move_above", "place_here", "move_around_axis", "approach_from_side", "move_parallel",
                                               "aim_along_axis", "place_disruptor", "insert_along", "extract_along", "surface_scan", "follow_perimeter",
-                                              "press", "wipe", "grasp_by_faces", "push_face", "scan_faces"};
+                                              "press", "wipe", "grasp_by_faces", "push_face", "scan_faces", "look_around"};
   return names;
 }
 
@@ -318,8 +335,8 @@ TEST_P(MacroCampaign, PlansNinetySevenPercentOfItsQueries) {
 }
 
 const auto kName = [](const auto& info) { return info.param; };
-INSTANTIATE_TEST_SUITE_P(EveryMacro, MacroSample, testing::ValuesIn(featureMacros()), kName);
-INSTANTIATE_TEST_SUITE_P(EveryMacro, MacroCampaign, testing::ValuesIn(featureMacros()), kName);
+INSTANTIATE_TEST_SUITE_P(EveryMacro, MacroSample, testing::ValuesIn(everyMacro()), kName);
+INSTANTIATE_TEST_SUITE_P(EveryMacro, MacroCampaign, testing::ValuesIn(everyMacro()), kName);
 
 }  // namespace
 }  // namespace longarm::planning

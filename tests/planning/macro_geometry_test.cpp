@@ -57,7 +57,8 @@ TEST(MacroList, HasEveryMacroOfTheContractWithSoundParameters) {
     }
   }
   for (const char* name : {"home", "stow", "ready", "look_at", "touch", "grab_pipe", "move_around_axis", "approach_from_side", "move_parallel",
-                           "aim_along_axis", "place_disruptor", "surface_scan", "follow_perimeter", "press", "wipe", "push_face"}) {
+                           "aim_along_axis", "place_disruptor", "surface_scan", "follow_perimeter", "press", "wipe", "push_face",
+                           "scan_faces", "look_around", "move_to"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }
 }

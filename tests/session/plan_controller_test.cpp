@@ -91,6 +91,35 @@ TEST_F(PlanControllerTest, SaysWhatAboveMeansAndPlansByIt) {
   EXPECT_EQ(*context->up, up);
 }
 
+TEST_F(PlanControllerTest, DefaultsOfATypedPoseFollowTheRobot) {
+  const auto& cell = *m_bench.document.workcell();
+  auto joints = std::make_shared<JointState>();
+  m_plans.setJointSource([joints] { return std::shared_ptr<const JointState>(joints); });
+  const auto stand = [&](const char* pose) {
+    *joints = {};
+    const auto& values = cell.poses.at(pose);
+    joints->positions.resize(static_cast<Eigen::Index>(values.size()));
+    for (const auto& [name, value] : values) {
+      joints->positions[static_cast<Eigen::Index>(joints->names.size())] = value;
+      joints->names.push_back(name);
+    }
+    Eigen::VectorXd q = cell.model->neutral();
+    cell.model->assign(*joints, q);
+    return Vector3d(cell.model->forward(q, *cell.model->linkIndex(cell.arm.tip_link)).translation());
+  };
+  const QString macro = QStringLiteral("move_to");
+  const Vector3d home = stand("home");
+  EXPECT_NEAR(m_plans.arguments(macro).at("x"), home.x(), 1e-12);
+  EXPECT_TRUE(row("move_to").advice.contains(QString::number(home.z(), 'f', 3))) << row("move_to").advice.toStdString();
+  ASSERT_TRUE(m_plans.setArgument(macro, QStringLiteral("z"), 0.5).ok());
+  const Vector3d stow = stand("stow");
+  ASSERT_GT((stow - home).norm(), 0.05);
+  EXPECT_NEAR(m_plans.arguments(macro).at("x"), stow.x(), 1e-12) << "what is not set follows";
+  EXPECT_EQ(m_plans.arguments(macro).at("z"), 0.5) << "what is set stays";
+  m_plans.resetArguments(macro);
+  EXPECT_NEAR(m_plans.arguments(macro).at("z"), stow.z(), 1e-12);
+}
+
 TEST_F(PlanControllerTest, OffersWhatTheSelectionsKindAllowsAndSaysWhyNot) {
   EXPECT_TRUE(row("home").enabled) << row("home").reason.toStdString();
   EXPECT_FALSE(row("touch").enabled);

@@ -2,6 +2,8 @@
 // at, played, paused, backed up, corrected and played to its end, all by mouse.
 //
 // LONGARM_UI_PICTURES=FOLDER keeps a picture of each plan, for docs/macros.md.
+#include <QDoubleSpinBox>
+
 #include "tests/ui/played_window.h"
 
 namespace longarm {
@@ -53,7 +55,8 @@ std::vector<MacroCase> everyMacro() {
       {"press", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}}, true},
       {"wipe", "scan_panel", ActionId::kToolPlane, "panel", kPanelTop, {{"depth", 0.015}, {"width", 0.06}}, true},
       {"push_face", "crate", ActionId::kToolTriad, "crate", kCrate, {{"distance", 0.05}}, false, 0.035, {"table"}},
-      {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}, false, 0, {"pallet", "ground"}}};
+      {"scan_faces", "package", ActionId::kToolTriad, "package", kPackage, {{"swath", 0.2}, {"speed", 0.1}}, false, 0, {"pallet", "ground"}},
+      {"look_around", "crate", ActionId::kToolTriad, "crate", kCrate, {}, false, 0, {"table"}}};
 }
 
 class MacroWindow : public tests::PlayedWindow, public ::testing::WithParamInterface<MacroCase> {
@@ -118,6 +121,44 @@ TEST_F(RegripWindow, AValveIsTurnedFarByGrippingAgain) {
   EXPECT_EQ(told.at("held").get<std::string>().empty(), false);
   EXPECT_NE(told.at("held").get<std::string>(), "rim_1") << "another piece of the rim";
   EXPECT_TRUE(contacts().empty()) << told.dump();
+}
+
+// Nothing is marked: the pose is typed, and what is not typed stays as it is.
+class TypedPoseWindow : public tests::PlayedWindow {
+ protected:
+  void type(const char* parameter, double value) {
+    auto* box = window->macros()->form()->number(QString::fromLatin1(parameter));
+    ASSERT_NE(box, nullptr) << parameter;
+    box->setValue(value * ui::shownUnit({parameter, "m"}).factor);
+  }
+};
+
+TEST_F(TypedPoseWindow, TakesTheToolThere) {
+  openScenario("crate");
+  if (HasFatalFailure()) return;
+  demand(op->resetStop());
+  demand(op->openGripper());
+  const Vector3d before = toolNow();
+  const QString macro = QStringLiteral("move_to");
+  planIt(macro, {});
+  if (HasFatalFailure()) return;
+  const auto first = bench->document().plan()->id;
+  EXPECT_NEAR(bench->plans().arguments(macro).at("z"), before.z(), 1e-3) << "it defaults to where the tool is";
+  type("z", before.z() + 0.10);
+  if (!HasFatalFailure()) type("y", before.y() - 0.20);
+  if (HasFatalFailure()) return;
+  const Vector3d wanted = before + Vector3d(0, -0.20, 0.10);
+  const auto planned = [&] {
+    const auto& plan = bench->document().plan();
+    return plan && plan->id != first && plan->plan.ok() && (plan->plan.goal.translation() - wanted).norm() < 2e-3;
+  };
+  ASSERT_TRUE(ui::SimulatedHand::waitFor(planned, 60)) << whyNot();
+  preview(macro);
+  if (!HasFatalFailure()) playAndCorrect();
+  if (!HasFatalFailure()) finish();
+  if (HasFatalFailure()) return;
+  EXPECT_LT((toolNow() - wanted).norm(), 5e-3) << "the correction was 1 mm at the most";
+  EXPECT_TRUE(contacts().empty()) << judge().dump();
 }
 
 TEST_P(MacroWindow, IsSketchedPlannedPlayedPausedBackedUpCorrectedAndFinished) { playThrough(); }
