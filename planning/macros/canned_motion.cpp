@@ -36,7 +36,7 @@ class CannedRun {
     if ((m_goal - m_run.start()).norm() < 1e-6) m_run.keepContact();
     else if (!m_run.leaveContact()) return m_run.plan();
     const auto world = m_run.makeWorld({}, m_run.configuration());
-    const ArmSpace space(m_run.workcell(), *world, m_run.configuration());
+    const ArmSpace space(m_run.workcell(), *world, m_run.configuration(), m_run.context().cancel);
     m_run.plan().goal = space.tip(m_goal);
     if ((m_goal - m_run.start()).norm() < 1e-6) return standHere(space);
     Contact contact;

@@ -140,7 +140,7 @@ class Corrector {
       if (const Status back = goBack(out.plan, space, m_plan.stages[k], here, leg.waypoints.back()); !back) return back.error();
       while (++k < m_plan.stages.size()) copyStage(out.plan, m_plan.stages[k]);
     }
-    measureRatios(m_run.workcell(), out.plan);
+    measureRatios(m_run.workcell(), out.plan, {});
     out.plan.goal = space.tip(out.plan.trajectory.points.back().positions);
     out.plan.min_clearance = std::min(m_plan.min_clearance, out.plan.min_clearance);
     return out;

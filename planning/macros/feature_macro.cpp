@@ -106,7 +106,7 @@ Plan FeatureMacro::planJob(MacroSetup& setup) const {
   const std::vector<std::string> notes = run.plan().notes;
   const auto world = run.makeWorld({}, run.configuration());
   run.plan().notes = notes;              // the planner looks at the start again, with the job's own obstacles
-  const ArmSpace space(run.workcell(), *world, run.configuration());
+  const ArmSpace space(run.workcell(), *world, run.configuration(), run.context().cancel);
   if (setup.arm_stays) {
     appendStage(run.plan(), "aim", false, standStill(run.workcell().armJointNames(), run.start(), 0.1));
     measureClearance(space, run.plan(), 0, 0.1);

@@ -35,7 +35,7 @@ bool appendFreeMove(PlanningRun& run, const ArmSpace& space, const Eigen::Vector
   if (run.cancelled()) return failed(PlanStatus::kCancelled, interruption(PlanStatus::kCancelled, 0));
   const double start = run.plan().trajectory.duration();
   appendStage(run.plan(), stage, false, *trajectory);
-  measureRatios(run.workcell(), run.plan());
+  measureRatios(run.workcell(), run.plan(), run.context().cancel);
   measureClearance(space, run.plan(), start, run.plan().trajectory.duration());
   return true;
 }

@@ -42,7 +42,8 @@ class GrabRun {
     approach_world->setPadding(std::min(m_options.approach_padding, approach_world->padding()),
                                approach_world->selfPadding());
     forgetRepeatedNotes();
-    const ArmSpace transit(m_run.workcell(), *transit_world, m_q), approach(m_run.workcell(), *approach_world, m_q);
+    const CancelToken& cancel = m_run.context().cancel;
+    const ArmSpace transit(m_run.workcell(), *transit_world, m_q, cancel), approach(m_run.workcell(), *approach_world, m_q, cancel);
     Contact contact;
     if (transit_world->touching(m_q, &contact)) {
       return m_run.fail(PlanStatus::kStartInCollision,
@@ -197,7 +198,7 @@ class GrabRun {
     Plan& plan = m_run.plan();
     if (!way.empty()) appendStage(plan, "transit", false, way);
     appendStage(plan, "approach", true, *last);
-    measureRatios(cell, plan);
+    measureRatios(cell, plan, m_run.context().cancel);
     const double end = plan.trajectory.duration(), start = end - last->duration();
     measureClearance(transit, plan, start - way.duration(), start);
     measureClearance(approach, plan, start, end);

@@ -35,7 +35,8 @@ ReachAnswer reachOfJob(PlanningRun& run, const ToolJob& job, const ReachSeed& se
   run.keepContact();
   const Eigen::VectorXd q = job.open_gripper ? withGripperOpen(run) : run.configuration();
   const TaskWorlds worlds = makeTaskWorlds(run, job, q);
-  const ArmSpace free(run.workcell(), *worlds.free, q), touching(run.workcell(), *worlds.touching, q);
+  const CancelToken& cancel = run.context().cancel;
+  const ArmSpace free(run.workcell(), *worlds.free, q, cancel), touching(run.workcell(), *worlds.touching, q, cancel);
   TaskSearch search(run, free, touching);
   const TaskPart& part = job.parts.front();
   const auto found = glanceAtParts(search, job, run.start(), seed);

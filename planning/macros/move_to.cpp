@@ -111,7 +111,7 @@ void advise(PlanningRun& run, const Pose& X_RT) {
   const std::vector<std::string> notes = run.plan().notes;
   const auto world = run.makeWorld({}, run.configuration());
   run.plan().notes = notes;
-  const ArmSpace space(run.workcell(), *world, run.configuration());
+  const ArmSpace space(run.workcell(), *world, run.configuration(), run.context().cancel);
   auto& advice = run.plan().advice;
   if (const auto turned = otherTurn(run, space, X_RT)) advice.push_back("At that place the tool can be held at " + turnText(turned->linear()) + ".");
   if (const auto near = furthest(run, space, X_RT)) {

@@ -38,8 +38,9 @@ void PlanningRun::progress(double fraction, const std::string& what) const {
 }
 
 Plan PlanningRun::fail(PlanStatus status, const std::string& reason, int waypoint, const std::optional<Pose>& pose) {
-  m_plan.status = status;
-  m_plan.reason = reason;
+  // After a cancel nothing is free any more, so that what else failed means nothing.
+  m_plan.status = cancelled() ? PlanStatus::kCancelled : status;
+  m_plan.reason = cancelled() ? interruption(PlanStatus::kCancelled, m_context.budget_s) : reason;
   m_plan.failed_waypoint = waypoint;
   m_plan.failed_pose = pose;
   m_plan.trajectory = {};
@@ -50,6 +51,7 @@ Plan PlanningRun::fail(PlanStatus status, const std::string& reason, int waypoin
 }
 
 Plan PlanningRun::finish() {
+  if (cancelled()) return fail(PlanStatus::kCancelled, {});
   m_plan.status = PlanStatus::kOk;
   m_plan.reason.clear();
   m_plan.planning_seconds = elapsed();
@@ -153,7 +155,7 @@ bool PlanningRun::backOff(const Eigen::Vector3d& way) {
   const auto touching = bareWorld({}, m_configuration, options, true);
   const auto [outside, inside] = touching->clearances(m_configuration, 2 * options.padding);
   touching->setPadding(std::min(options.padding, kStartShare * outside), std::min(options.self_padding, kStartShare * inside));
-  const ArmSpace space(workcell(), *touching, m_configuration);
+  const ArmSpace space(workcell(), *touching, m_configuration, m_context.cancel);
   Pose X_end = space.tip(m_start);
   X_end.translation() += way;
   const StraightLeg leg = followLine(space, m_start, X_end);

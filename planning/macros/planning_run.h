@@ -54,9 +54,9 @@ class PlanningRun {
   /// that, with a note.
   std::unique_ptr<CollisionWorld> makeWorld(const std::vector<WorldObject>& extra, const Eigen::VectorXd& q);
 
-  /// The plan as it failed.
+  /// The plan as it failed; as cancelled where that was asked for, whatever else is wrong.
   Plan fail(PlanStatus status, const std::string& reason, int waypoint = -1, const std::optional<Pose>& pose = {});
-  /// The finished plan.
+  /// The finished plan, or as cancelled.
   Plan finish();
 
   /// A collision world in which the gripper has let go at q: what it held at the start stands where `X_moved` has taken it (from

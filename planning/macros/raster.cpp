@@ -89,7 +89,7 @@ ScanFigures scanFigures(const ArmSpace& space, const Plan& plan, double from_s, 
   const auto cellOf = [](double value, double length) { return static_cast<int>(std::floor(value / length * kCells)); };
   const int samples = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / kSample)));
   double last_along = 0;
-  for (int i = 0; i <= samples; ++i) {
+  for (int i = 0; i <= samples && !space.cancelled(); ++i) {
     const TrajectoryPoint point = plan.trajectory.sample(from_s + (to_s - from_s) * i / samples);
     const Pose X = space.tip(point.positions);
     const Eigen::Vector3d z = X.linear().col(2);

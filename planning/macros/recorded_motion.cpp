@@ -62,7 +62,7 @@ class RecordedRun {
     else if (!m_run.leaveContact())
       return m_run.plan();
     const auto world = m_run.makeWorld({}, m_run.configuration());
-    const ArmSpace space(m_run.workcell(), *world, m_run.configuration());
+    const ArmSpace space(m_run.workcell(), *world, m_run.configuration(), m_run.context().cancel);
     m_run.plan().goal = space.tip(m_points.front());
     if (!checkFree(space)) return m_run.plan();
     const std::string where = "the first way-point of \"" + m_motion.name + "\"";
@@ -137,7 +137,7 @@ class RecordedRun {
       if (!timed) return m_run.fail(PlanStatus::kNoPath, timed.error().message);
       appendStage(plan, "replay", false, *timed);
     }
-    measureRatios(m_run.workcell(), plan);
+    measureRatios(m_run.workcell(), plan, m_run.context().cancel);
     measureClearance(space, plan, start, plan.trajectory.duration());
     plan.goal = space.tip(m_points.back());
     return m_run.finish();

@@ -66,7 +66,8 @@ Plan TaskPlanner::plan() {
     return m_run.fail(PlanStatus::kStartInCollision,
                       "Where the arm stands, " + contact.sentence() + ". Move it clear of " + m_job.subject + " first.", 0);
   }
-  const ArmSpace free(m_run.workcell(), *worlds.free, m_q), touching(m_run.workcell(), *worlds.touching, m_q);
+  const CancelToken& cancel = m_run.context().cancel;
+  const ArmSpace free(m_run.workcell(), *worlds.free, m_q, cancel), touching(m_run.workcell(), *worlds.touching, m_q, cancel);
   TaskSearch ways(m_run, free, touching);
   if (!search(ways, free)) {
     m_run.plan().min_clearance = 0;
@@ -75,7 +76,7 @@ Plan TaskPlanner::plan() {
     return m_run.fail(status, interruption(status, m_run.context().budget_s));
   }
   Plan& plan = m_run.plan();
-  measureRatios(m_run.workcell(), plan);
+  measureRatios(m_run.workcell(), plan, m_run.context().cancel);
   plan.goal = free.tip(plan.trajectory.points.back().positions);
   return m_run.finish();
 }

@@ -92,7 +92,7 @@ const ArmSpace& TaskSearch::spaceOf(const ToolStage& stage) const {
   }
   const Eigen::VectorXd q = m_run.withGripperAt(m_run.workcell().gripper->open);
   Released made{*stage.X_released, stage.touching, m_run.makeReleasedWorld(*stage.X_released, q, stage.touching), nullptr};
-  made.space = std::make_unique<ArmSpace>(m_run.workcell(), *made.world, q);
+  made.space = std::make_unique<ArmSpace>(m_run.workcell(), *made.world, q, m_run.context().cancel);
   m_released.push_back(std::move(made));
   return *m_released.back().space;
 }

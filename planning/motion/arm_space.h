@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "core/cancel.h"
 #include "core/pose.h"
 #include "planning/collision/collision_world.h"
 #include "planning/world/workcell.h"
@@ -15,7 +16,8 @@ namespace longarm::planning {
 class ArmSpace {
  public:
   /// @param q  Full configuration that the other joints keep.
-  ArmSpace(const Workcell& workcell, CollisionWorld& world, Eigen::VectorXd q);
+  /// @param cancel  Whoever works in the space stops soon after: from then on nothing is free.
+  ArmSpace(const Workcell& workcell, CollisionWorld& world, Eigen::VectorXd q, CancelToken cancel = {});
 
   const RobotModel& model() const { return *m_workcell->model; }
   const JointGroup& group() const { return m_workcell->arm; }
@@ -24,6 +26,7 @@ class ArmSpace {
   const Eigen::VectorXd& lower() const { return m_lower; }     ///< Finite: +-2 pi where the joint has no limit.
   const Eigen::VectorXd& upper() const { return m_upper; }
 
+  bool cancelled() const { return m_cancel.cancelled(); }
   Eigen::VectorXd full(const Eigen::VectorXd& arm) const;
   Pose tip(const Eigen::VectorXd& arm) const;
   bool withinLimits(const Eigen::VectorXd& arm, double tolerance = 1e-9) const;
@@ -39,6 +42,7 @@ class ArmSpace {
   mutable Eigen::VectorXd m_scratch;       // a full configuration, to save allocating one for every check
   Eigen::VectorXd m_lower, m_upper;
   int m_tip = 0;
+  CancelToken m_cancel;
 };
 
 }  // namespace longarm::planning

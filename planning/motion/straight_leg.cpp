@@ -31,6 +31,7 @@ struct Follower {
   // Goes from the last waypoint to parameter `s`, halving where the joints would leave the path.
   bool advance(double from, double s, int depth) {
     Eigen::VectorXd arm = leg.waypoints.back();
+    if (space.cancelled()) return fail(from, "was not looked at: cancelled");
     if (!solveNear(space, X_RT(s), arm)) return fail(from, "is out of reach or a joint limit");
     const Eigen::VectorXd before = leg.waypoints.back();
     const Pose X_middle = space.tip(0.5 * (before + arm));
@@ -128,7 +129,7 @@ StraightLeg followPath(const ArmSpace& space, const Eigen::VectorXd& start, cons
 LegDeviation splineDeviation(const ArmSpace& space, const StraightLeg& leg, const std::function<Pose(double)>& X_RT) {
   const SplinePath path(leg.way, leg.waypoints);
   LegDeviation worst;
-  for (std::size_t i = 1; i < leg.way.size(); ++i) {
+  for (std::size_t i = 1; i < leg.way.size() && !space.cancelled(); ++i) {
     for (const double share : {0.25, 0.5, 0.75}) {
       const double s = leg.way[i - 1] + share * (leg.way[i] - leg.way[i - 1]);
       const Vector6d error = poseError(X_RT(s), space.tip(path.at(s).q));

@@ -50,6 +50,7 @@ StraightLeg followPath(const ArmSpace& space, const Eigen::VectorXd& start, cons
 struct LegDeviation {
   double position = 0, angle = 0;        ///< [m], [rad]
 };
+/// Ends early when the space is cancelled.
 LegDeviation splineDeviation(const ArmSpace& space, const StraightLeg& leg, const std::function<Pose(double)>& X_RT);
 
 /// Newton steps from `start` to the pose, within the limits; false if they do not arrive (1e-7 m, 1e-7 rad).

@@ -20,6 +20,7 @@ constexpr double kFurthest = 0.5;        // [m]
 TimingOptions timingOptions(const ArmSpace& space, const StageSpeed& speed) {
   TimingOptions options;
   options.max_tool_speed = speed.max_tool_speed;
+  options.stop = [&space] { return space.cancelled(); };
   options.tool_way = [&space](const PathState& state) { return space.toolWay(state.q, state.dq); };
   return options;
 }
@@ -80,6 +81,7 @@ Result<Trajectory> timedPath(const Workcell& workcell, const ArmSpace& space, co
     auto trajectory = parameterize(path, workcell.armJointNames(), limits, timingOptions(space, speed));
     if (!trajectory) return trajectory;
     if (certified(space, *trajectory, &contact)) return trajectory;
+    if (space.cancelled()) break;
     for (double& blend : blends) blend /= 8;     // closer to the straight pieces, which are known to be free
   }
   return notFree(contact);
@@ -102,9 +104,9 @@ void appendStage(Plan& plan, const std::string& name, bool straight, const Traje
   plan.stages.push_back({name, start, plan.trajectory.duration(), straight});
 }
 
-void measureRatios(const Workcell& workcell, Plan& plan) {
-  const LimitRatios ratios =
-      limitRatios(plan.trajectory, workcell.arm_limits.max_velocity, workcell.arm_limits.max_acceleration);
+void measureRatios(const Workcell& workcell, Plan& plan, const CancelToken& cancel) {
+  const LimitRatios ratios = limitRatios(plan.trajectory, workcell.arm_limits.max_velocity, workcell.arm_limits.max_acceleration,
+                                         [&cancel] { return cancel.cancelled(); });
   plan.max_velocity_ratio = ratios.velocity;
   plan.max_acceleration_ratio = ratios.acceleration;
 }
@@ -112,7 +114,7 @@ void measureRatios(const Workcell& workcell, Plan& plan) {
 void measureClearance(const ArmSpace& space, Plan& plan, double from_s, double to_s) {
   if (plan.clearance.empty()) plan.min_clearance = kFurthest;
   const int steps = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / kClearanceStep)));
-  for (int i = 0; i <= steps; ++i) {
+  for (int i = 0; i <= steps && !space.cancelled(); ++i) {
     const double t = from_s + (to_s - from_s) * i / steps;
     const Eigen::VectorXd q = space.full(plan.trajectory.sample(t).positions);
     const auto [outside, inside] = space.world().clearances(q, std::max(plan.min_clearance, kClearanceTold));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/require.h"
 #include "core/text.h"
@@ -34,11 +35,15 @@ Status checkInput(const JointPath& path, std::size_t joints, const NominalLimits
   return {};
 }
 
-TimeLaw lawFor(const JointPath& path, const NominalLimits& limits, const TimingOptions& options) {
+bool stopped(const TimingOptions& options) { return options.stop && options.stop(); }
+
+// Nothing when it was stopped.
+std::optional<TimeLaw> lawFor(const JointPath& path, const NominalLimits& limits, const TimingOptions& options) {
   const std::vector<double> grid = path.grid();
   std::vector<PathConstraint> constraints;
   constraints.reserve(grid.size());
   for (const double s : grid) {
+    if (stopped(options)) return std::nullopt;
     PathState state = path.at(s);
     PathConstraint c;
     if (options.tool_way) {
@@ -69,7 +74,7 @@ void slowDown(Trajectory& trajectory, double factor) {
 }  // namespace
 
 LimitRatios limitRatios(const Trajectory& trajectory, const Eigen::VectorXd& max_velocity,
-                        const Eigen::VectorXd& max_acceleration) {
+                        const Eigen::VectorXd& max_acceleration, const std::function<bool()>& stop) {
   LimitRatios ratios;
   const auto look = [&](double t) {
     const TrajectoryPoint p = trajectory.sample(t);
@@ -78,6 +83,7 @@ LimitRatios limitRatios(const Trajectory& trajectory, const Eigen::VectorXd& max
         std::max(ratios.acceleration, (p.accelerations.cwiseAbs().array() / max_acceleration.array()).maxCoeff());
   };
   for (std::size_t i = 1; i < trajectory.points.size(); ++i) {
+    if (stop && stop()) break;
     const double from = trajectory.points[i - 1].t, h = trajectory.points[i].t - from;
     const int samples = std::max(8, static_cast<int>(std::ceil(h / kSample)));
     for (int k = 0; k <= samples; ++k) look(from + h * k / samples);
@@ -88,7 +94,10 @@ LimitRatios limitRatios(const Trajectory& trajectory, const Eigen::VectorXd& max
 Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::string>& joint_names,
                                 const NominalLimits& limits, const TimingOptions& options) {
   if (auto status = checkInput(path, joint_names.size(), limits); !status) return status.error();
-  const TimeLaw law = lawFor(path, limits, options);
+  const Error cancelled{ErrorCode::kCancelled, "timing the motion was cancelled"};
+  const auto found = lawFor(path, limits, options);
+  if (!found || stopped(options)) return cancelled;
+  const TimeLaw& law = *found;
   const double window = std::max(options.smoothing_s, 0.0);
   const double duration = law.duration() + window;
   if (!std::isfinite(duration) || duration > 3600) {
@@ -99,6 +108,7 @@ Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::st
   const int cells = std::max(2, static_cast<int>(std::ceil(duration / (0.98 * options.point_spacing_s))));
   double tool_ratio = 0;
   for (int i = 0; i <= cells; ++i) {
+    if (stopped(options)) return cancelled;
     const double t = i == cells ? duration : duration * i / cells;
     out.points.push_back(pointAt(path, law, t, window));
     if (!options.tool_way) continue;
@@ -107,7 +117,8 @@ Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::st
   }
   out.points.front().velocities.setZero();
   out.points.back().velocities.setZero();
-  const LimitRatios ratios = limitRatios(out, limits.max_velocity, limits.max_acceleration);
+  const LimitRatios ratios = limitRatios(out, limits.max_velocity, limits.max_acceleration, options.stop);
+  if (stopped(options)) return cancelled;
   const double slower = std::max({ratios.velocity, std::sqrt(ratios.acceleration), tool_ratio}) * (1 + kPeakMargin);
   if (slower > 1) slowDown(out, slower);
   return out;

@@ -22,6 +22,7 @@ struct TimingOptions {
   ToolWay tool_way;                      ///< Empty: the tool's speed is not looked at.
   double smoothing_s = 0.08;             ///< Window over which acceleration is averaged; lengthens the motion by as much.
   double point_spacing_s = 0.02;         ///< Of the points; at most this.
+  std::function<bool()> stop;            ///< Asked every few points: true ends it.  Empty: never.
 };
 
 /// Rest to rest along the path as fast as the limits allow.
@@ -29,16 +30,17 @@ struct TimingOptions {
 /// The fastest law (time_law.h) is averaged over a window, so that acceleration is continuous and quintic interpolation
 /// between the points follows it; then it is sampled every 0.5 ms as Trajectory::sample() will play it, and slowed
 /// down as a whole by what a limit is still passed (a percent or so).
-/// @returns kDegenerate when path and limits do not fit together (sizes, zero length, not finite).
+/// @returns kDegenerate when path and limits do not fit together (sizes, zero length, not finite), kCancelled when it was stopped.
 Result<Trajectory> parameterize(const JointPath& path, const std::vector<std::string>& joint_names,
                                 const NominalLimits& limits, const TimingOptions& options = {});
 
-/// Largest |velocity| / limit and |acceleration| / limit over samples at most 0.5 ms apart, the points among them.
+/// Largest |velocity| / limit and |acceleration| / limit over samples at most 0.5 ms apart, the points among them; of what was
+/// looked at before `stop`, asked at every point, said true.
 struct LimitRatios {
   double velocity = 0, acceleration = 0;
 };
 LimitRatios limitRatios(const Trajectory& trajectory, const Eigen::VectorXd& max_velocity,
-                        const Eigen::VectorXd& max_acceleration);
+                        const Eigen::VectorXd& max_acceleration, const std::function<bool()>& stop = {});
 
 /// Appends b, which starts at rest where a ends, to a.  @pre same joints
 void append(Trajectory& a, const Trajectory& b);

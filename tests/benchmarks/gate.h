@@ -75,6 +75,7 @@ std::vector<Contest> robotContests();
 std::vector<Contest> motionContests();
 std::vector<Budget> stereoBudgets();
 std::vector<Budget> reachBudgets();
+std::vector<Budget> cancelBudgets();
 std::vector<Contest> calibrationContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> poseContests(std::map<std::string, std::string>* skipped);
 std::vector<Contest> paneContests(std::map<std::string, std::string>* skipped);

@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   }
   std::vector<Budget> budgets = stereoBudgets();
   for (auto& budget : reachBudgets()) budgets.push_back(std::move(budget));
+  for (auto& budget : cancelBudgets()) budgets.push_back(std::move(budget));
   for (auto& budget : paneBudgets(&skipped)) budgets.push_back(std::move(budget));
   for (auto& budget : sceneBudgets(&skipped)) budgets.push_back(std::move(budget));
   std::vector<std::string> known;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/collision/collision_world.h"
+#include "planning/macros/planning_run.h"
 #include "planning/macros/tool_shape.h"
 #include "tests/planning/macro_scene.h"
 
@@ -407,6 +408,45 @@ TEST(MacroFailures, StopWhenCancelledBeforeTheyBegin) {
   PlanContext late = contextOf(cell());
   late.budget_s = 0;
   EXPECT_EQ(macroOf("surface_scan").plan(late, &feature).status, PlanStatus::kTimeout);
+}
+
+// Cancelled at every instant at which progress is told, the last one included: never half a plan.
+TEST(MacroFailures, EndAsCancelledWheneverItIsAskedFor) {
+  const vision::Feature plane = upright(), box = crate(), pipe = featureOf(FeatureKind::kLine, {{0.7, -0.15, 0.45}, {0.7, 0.15, 0.45}});
+  const std::vector<std::pair<std::string, const vision::Feature*>> all{{"surface_scan", &plane}, {"scan_faces", &box}, {"grab_pipe", &pipe}, {"ready", nullptr}};
+  for (const auto& [macro, feature] : all) {
+    int told = 0;
+    PlanContext context = contextOf(cell());
+    context.budget_s = 60;
+    context.progress = [&](double, const std::string&) { ++told; };
+    ASSERT_TRUE(macroOf(macro).plan(context, feature).ok()) << macro;
+    ASSERT_GE(told, 2) << macro;
+    for (int at = 1; at <= told; ++at) {
+      int count = 0;
+      context.cancel = CancelToken();
+      context.progress = [&, at](double, const std::string&) {
+        if (++count == at) context.cancel.cancel();
+      };
+      const Plan plan = macroOf(macro).plan(context, feature);
+      EXPECT_EQ(plan.status, PlanStatus::kCancelled) << macro << ", " << at << " of " << told << ": " << plan.reason;
+      EXPECT_TRUE(plan.trajectory.empty());
+      EXPECT_LE(count, at + 1) << macro << ": what was under way may tell once more";
+    }
+  }
+}
+
+TEST(MacroFailures, NothingIsFreeInASpaceThatWasCancelled) {
+  PlanContext context = contextOf(cell());
+  PlanningRun run(context, "test");
+  ASSERT_TRUE(run.begin());
+  const auto world = run.makeWorld({}, run.configuration());
+  const CancelToken cancel;
+  const ArmSpace space(cell(), *world, run.configuration(), cancel);
+  EXPECT_TRUE(space.valid(run.start()));
+  EXPECT_TRUE(space.segmentFree(run.start(), run.start()));
+  cancel.cancel();
+  EXPECT_FALSE(space.valid(run.start()));
+  EXPECT_FALSE(space.segmentFree(run.start(), run.start()));
 }
 
 TEST(MacroAccuracy, IsReportedAndNotRefused) {

@@ -137,6 +137,24 @@ TEST(Parameterize, RefusesWhatDoesNotFit) {
             std::string::npos);
 }
 
+TEST(Parameterize, EndsWhereverItIsStopped) {
+  const BlendedPolyline path(randomCorners(4, 5), {0.1, 0.1, 0.1});
+  int asked = 0;
+  TimingOptions options;
+  options.stop = [&] { return ++asked < 0; };
+  ASSERT_TRUE(parameterize(path, kSix, kLimits, options).ok());
+  const int all = asked;
+  ASSERT_GT(all, 100);
+  for (const int at : {1, all / 4, all / 2, 3 * all / 4, all}) {
+    asked = 0;
+    options.stop = [&, at] { return ++asked >= at; };
+    const auto stopped = parameterize(path, kSix, kLimits, options);
+    ASSERT_FALSE(stopped.ok()) << at << " of " << all;
+    EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+    EXPECT_LE(asked, at + 1);
+  }
+}
+
 TEST(BlendedPolyline, HasContinuousFirstAndSecondDerivatives) {
   const BlendedPolyline path({vec({0, 0}), vec({1, 0}), vec({1, 2}), vec({0, 2.5})}, {0.3, 0.1});
   const double h = 1e-6;
