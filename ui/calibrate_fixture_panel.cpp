@@ -164,7 +164,9 @@ void CalibrateFixturePanel::refreshPoints() {
     const int row = static_cast<int>(match.point);
     placed.insert(match.point);
     setCell(m_points, row, 3, match.by_hand ? tr("by you") : tr("found"));
-    if (model().result()) setCell(m_points, row, 2, QString::number(model().residual(i).norm(), 'f', 2));
+    if (!model().result()) continue;
+    setCell(m_points, row, 2, QString::number(model().residual(i).norm(), 'f', 2));
+    if (model().result()->left_out[i]) setCell(m_points, row, 3, tr("left out"));
   }
   if (model().point() >= 0) m_points->setCurrentCell(model().point(), 0);
   m_filling = false;

@@ -29,7 +29,9 @@ class CalibrateFixturePanel final : public QWidget {
   widgets::ImageCanvas* canvas() const { return m_canvas; }
   FixturePicture* fixture() const { return m_fixture; }
   QTableWidget* points() const { return m_points; }
+  QPushButton* takeButton() const { return m_take; }
   QPushButton* matchButton() const { return m_match; }
+  widgets::HoldButton* applyButton() const { return m_apply; }
   QString result() const;
 
  protected:

@@ -31,6 +31,7 @@ constexpr int kColumnWidth = 372;
 constexpr double kDepth_m = 1;             // Of the millimetres that are told.
 
 QString px(double value, int decimals = 3) { return QString::number(value, 'f', decimals); }
+QString zoomText(const std::optional<double>& zoom) { return zoom ? QString::number(*zoom, 'f', 3) : CalibrateIntrinsicsPanel::tr("not known"); }
 
 }  // namespace
 
@@ -222,7 +223,8 @@ void CalibrateIntrinsicsPanel::chooseSource() {
 
 void CalibrateIntrinsicsPanel::offerLive(const QString& camera) {
   if (!m_live || !isVisible() || camera != m_source->currentData().toString()) return;
-  model().offerLive(m_bench.live().picture(camera), m_bench.live().stamp_s(camera));
+  const double stamp_s = m_bench.live().stamp_s(camera);
+  model().offerLive(m_bench.live().picture(camera), stamp_s, m_bench.zoomDrive().zoomAt(camera, stamp_s));
 }
 
 void CalibrateIntrinsicsPanel::refresh() {
@@ -258,7 +260,9 @@ void CalibrateIntrinsicsPanel::refreshViews() {
     setTick(m_views, row, 0, picture.view.has_value(), picture.included);
     setCell(m_views, row, 1, QFileInfo(QString::fromStdString(picture.name)).fileName());
     QString rms = QStringLiteral("-"), why = QString::fromStdString(picture.why);
+    const auto newest = model().boards().zoom();
     if (picture.view && !picture.included) why = tr("left out by you");
+    else if (picture.view && !session::BoardCollection::sameZoom(picture.zoom, newest)) why = tr("another zoom: %1").arg(zoomText(picture.zoom));
     if (const auto view = outcome ? outcome->viewOf(static_cast<std::size_t>(row)) : std::nullopt) {
       const auto& report = outcome->result.views[*view];
       if (report.rms_px >= 0) rms = px(report.rms_px);
@@ -288,9 +292,11 @@ void CalibrateIntrinsicsPanel::refreshResult() {
       setCell(m_parameters, row, 1, px(values[i], decimals));
       setCell(m_parameters, row, 2, px(std::sqrt(std::max(0.0, result.covariance(i, i))), decimals));
     }
-    QStringList lines{tr("rms %1 px per component over %2 pictures; rays are uncertain by %3 px on average, %4 px at most (%5 mm at 1 m).")
+    QStringList lines;
+    if (outcome->zoom) lines << tr("At zoom %1: add it to the camera's table on the page Zoom.").arg(zoomText(outcome->zoom));
+    lines << tr("rms %1 px per component over %2 pictures; rays are uncertain by %3 px on average, %4 px at most (%5 mm at 1 m).")
                           .arg(px(result.rms_px), QString::number(outcome->coverage.views), px(outcome->uncertainty.mean_px), px(outcome->uncertainty.max_px),
-                               px(calibration::LensUncertainty::millimetres(outcome->uncertainty.max_px, kDepth_m, result.camera.fx), 2))};
+                               px(calibration::LensUncertainty::millimetres(outcome->uncertainty.max_px, kDepth_m, result.camera.fx), 2));
     for (const auto& warning : result.warnings) lines << QString::fromStdString(warning);
     m_summary->setText(lines.join(QLatin1Char('\n')));
   }

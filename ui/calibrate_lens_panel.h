@@ -33,6 +33,8 @@ class CalibrateLensPanel final : public QWidget {
   QComboBox* camera() const { return m_camera; }
   QSlider* slider(int index) const { return m_sliders[static_cast<std::size_t>(index)]; }
   QCheckBox* straightened() const { return m_straightened; }
+  QPushButton* takeButton() const { return m_take; }
+  QComboBox* coefficients() const { return m_coefficients; }
   QPushButton* solveButton() const { return m_solve; }
   widgets::HoldButton* applyButton() const { return m_apply; }
 

@@ -85,7 +85,7 @@ QWidget* CalibrateZoomPanel::buildSteps(Appearance& appearance) {
 }
 
 void CalibrateZoomPanel::bind() {
-  connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateZoomPanel::refreshDrive);
+  connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateZoomPanel::refresh);
   connect(m_setting, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &CalibrateZoomPanel::refresh);
   connect(m_advised, &QPushButton::clicked, this, [this] {
     if (!model().advised().empty()) m_setting->setValue(model().advised().front());
@@ -166,7 +166,7 @@ void CalibrateZoomPanel::refresh() {
   m_curve->setTable(model().table(), m_setting->value());
   const auto& advised = model().advised();
   QString text;
-  if (nodes.empty()) text = tr("Begin with the two ends, 0 and 1.");
+  if (nodes.empty()) text = tr("Begin with the two ends, 0 and %1.").arg(model().lastSetting(m_camera->currentData().toString().toStdString()));
   else if (nodes.size() == 1) text = tr("Calibrate the other end too.");
   else if (!advised.empty()) text = tr("Calibrate at zoom %1 next: predictions there are the worst.").arg(advised.front(), 0, 'g', 3);
   else text = model().light() == TrafficLight::kGreen ? tr("Every setting is predicted well by the others: the table is good.") : tr("One more setting in the middle would tell how good the table is.");
@@ -187,7 +187,7 @@ void CalibrateZoomPanel::refreshDrive() {
   if (why.isEmpty()) why = m_bench.whyNotCalibrate();
   setWhyNot(m_use, why, tr("The camera is measured with by this table from now on, at every zoom; snapshots keep their lens"));
   setWhyNot(m_go, whyNotGo(), tr("First a little below, then to the setting: always from the same side"));
-  setWhyNot(m_add, model().whyNotAddLens(m_setting->value()), tr("The newest result of the board becomes the table's entry at this setting"));
+  setWhyNot(m_add, model().whyNotAddLens(m_camera->currentData().toString().toStdString(), m_setting->value()), tr("The newest result of the board becomes the table's entry at this setting"));
 }
 
 }  // namespace longarm::ui

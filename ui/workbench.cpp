@@ -8,6 +8,7 @@
 #include <QStandardPaths>
 
 #include "planning/world/room.h"
+#include "planning/world/scenario.h"
 #include "planning/world/workcell.h"
 #include "session/document/feature_rows.h"
 #include "session/commands/reregistration.h"
@@ -22,6 +23,14 @@ namespace {
 QString libraryFolder(const QString& autosave_folder, const QString& name) {
   return autosave_folder.isEmpty() ? QString()
                                    : QDir::cleanPath(autosave_folder + QStringLiteral("/../") + name);
+}
+
+// A scenario is for a robot; what the operator names goes first.
+Result<planning::Workcell> chosenWorkcell(const RobotChoice& choice) {
+  if (!choice.workcell.isEmpty()) return planning::loadWorkcell(choice.workcell.toStdString());
+  if (!choice.variant.isEmpty() || choice.scenario.isEmpty()) return planning::loadBuiltInWorkcell(choice.variant.toStdString());
+  const auto scenario = planning::loadScenario(choice.scenario.toStdString());
+  return scenario ? planning::workcellOf(*scenario) : Result<planning::Workcell>(scenario.error());
 }
 
 }  // namespace
@@ -224,8 +233,7 @@ void Workbench::openRobot(const RobotChoice& choice) {
   m_jobs.run<WorkcellPtr>(
       this,
       [choice]() -> Result<WorkcellPtr> {
-        auto workcell = choice.workcell.isEmpty() ? planning::loadBuiltInWorkcell(choice.variant.toStdString())
-                                                  : planning::loadWorkcell(choice.workcell.toStdString());
+        auto workcell = chosenWorkcell(choice);
         if (!workcell) return workcell.error();
         return std::make_shared<const planning::Workcell>(std::move(*workcell));
       },

@@ -16,7 +16,7 @@ struct Options {
 nlohmann::json perPointJson(const calibration::BoardView& points, const calibration::FixtureResult& result) {
   nlohmann::json out = nlohmann::json::array();
   for (std::size_t i = 0; i < points.corners.size(); ++i) {
-    out.push_back({{"line", points.corners[i].line}, {"residual_px", result.residual_px[i]}});
+    out.push_back({{"line", points.corners[i].line}, {"residual_px", result.residual_px[i]}, {"used", !result.left_out[i]}});
   }
   return out;
 }

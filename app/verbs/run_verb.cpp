@@ -16,9 +16,7 @@ struct RunOptions {
 };
 
 Result<planning::Workcell> workcellOf(const RunOptions& options, const planning::Scenario& scenario) {
-  if (!options.workcell.empty()) return planning::loadWorkcell(options.workcell);
-  if (scenario.robot != "longarm_one") return planning::loadWorkcell(scenario.robot);
-  return planning::loadBuiltInWorkcell(scenario.variant);
+  return options.workcell.empty() ? planning::workcellOf(scenario) : planning::loadWorkcell(options.workcell);
 }
 
 std::string stagesTable(const session::TaskReport& report) {

@@ -37,7 +37,8 @@ MotionLimits hardLimits(const planning::Workcell& workcell) {
   return out;
 }
 
-Result<Eigen::VectorXd> startConfiguration(const planning::Workcell& workcell, const std::string& pose) {
+Result<Eigen::VectorXd> startConfiguration(const planning::Workcell& workcell, const planning::Scenario& scenario) {
+  const std::string& pose = scenario.start_pose;
   const auto found = workcell.poses.find(pose);
   if (found == workcell.poses.end()) {
     return Error{ErrorCode::kInvalidInput, "start_pose \"" + pose + "\" is not among the poses of " + workcell.path};
@@ -49,6 +50,13 @@ Result<Eigen::VectorXd> startConfiguration(const planning::Workcell& workcell, c
     const auto value = found->second.find(name);
     if (value != found->second.end()) q[i] = value->second;
     if (workcell.gripper && workcell.gripper->joint == name) q[i] = workcell.gripper->open;
+    const auto own = scenario.start_joints.find(name);
+    if (own != scenario.start_joints.end()) q[i] = own->second;
+  }
+  for (const auto& [name, value] : scenario.start_joints) {
+    const auto& names = model.actuatedNames();
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    return Error{ErrorCode::kInvalidInput, "start_joints." + name + ": " + workcell.path + " has no such joint"};
   }
   return q;
 }
@@ -74,7 +82,7 @@ std::string usualCamera(const planning::Workcell& workcell) {
 
 Result<std::unique_ptr<RobotBody>> RobotBody::create(const planning::Workcell& workcell,
                                                      const planning::Scenario& scenario, unsigned seed) {
-  const auto start = startConfiguration(workcell, scenario.start_pose);
+  const auto start = startConfiguration(workcell, scenario);
   if (!start) return start.error();
   std::optional<FingerZone> zone;
   if (workcell.gripper) {

@@ -66,6 +66,8 @@ class RobotBody {
   /// @returns kNotFound, or kInvalidInput for numbers that are not finite.
   Status aim(const std::string& pan_tilt, const std::map<std::string, double>& joints);
   FaultBoard& faults() { return m_faults; }
+  /// TrueWorld::showTo.
+  void showTo(const std::string& camera, const Pose& X_WC, double magnification) { m_world.showTo(camera, X_WC, magnification); }
 
   // What it measures.
   /// All joints of the robot, by URDF name, as the encoders read them; stamp on the robot's clock.

@@ -145,11 +145,24 @@ void TrueWorld::release() {
   ++m_revision;
 }
 
+void TrueWorld::showTo(const std::string& camera, const Pose& X_WC, double magnification) {
+  m_spectators.insert_or_assign(camera, Spectator{X_WC, magnification});
+}
+
+Pose TrueWorld::onRoute(const planning::ScenarioObject& object) const {
+  Pose X = object.onRoute(m_time_s);
+  if (object.before.empty()) return X;
+  const auto found = m_spectators.find(object.before);
+  if (found == m_spectators.end()) return X;
+  X.translation().z() *= found->second.magnification;
+  return found->second.X_WC * X;
+}
+
 void TrueWorld::step(double seconds) {
   m_time_s += seconds;
   for (std::size_t i = 0; i < m_objects.size(); ++i) {
     if (m_objects[i].route.empty() || m_held == i) continue;
-    m_objects[i].body.X_WO = m_objects[i].onRoute(m_time_s);
+    m_objects[i].body.X_WO = onRoute(m_objects[i]);
     if (m_objects[i].body.collides) ++m_revision;
   }
   for (auto& fall : m_falls) {

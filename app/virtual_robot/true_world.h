@@ -3,6 +3,7 @@
 /// @file
 /// TrueWorld: where the scenario's objects really are.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ class TrueWorld {
   bool carry(const Pose& X_WT);
   /// Lets go: the held object falls straight down until it meets something, unless it is guided.
   void release();
+  /// What is held before this camera (ScenarioObject::before) is placed by it from now on.
+  /// @param X_WC as it stood at the start  @param magnification of its lens since then, > 0
+  void showTo(const std::string& camera, const Pose& X_WC, double magnification);
   /// One tick of falling, and of what is carried about.
   void step(double seconds);
 
@@ -56,11 +60,16 @@ class TrueWorld {
     std::size_t index;
     double way, done, speed;
   };
+  struct Spectator {
+    Pose X_WC;
+    double magnification;
+  };
 
   std::vector<planning::WorldObject> others(std::size_t index) const;
   bool standsOver(std::size_t index) const;
   void fall(std::size_t index);
   Mechanism* mechanismOf(std::size_t index);
+  Pose onRoute(const planning::ScenarioObject& object) const;
   bool lead(Mechanism& mechanism, const Pose& X_WT);
 
   std::vector<planning::ScenarioObject> m_objects;
@@ -70,6 +79,7 @@ class TrueWorld {
   std::optional<std::size_t> m_held;
   Pose m_X_TO = Pose::Identity();
   std::vector<Fall> m_falls;
+  std::map<std::string, Spectator> m_spectators;
   double m_time_s = 0;
   long m_revision = 0;
 };

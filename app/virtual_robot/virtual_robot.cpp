@@ -14,11 +14,6 @@ constexpr double kRenderShare = 0.7;     // of the time, so that the console get
 constexpr double kFarthest_m = 100;
 constexpr double kLongestRest_s = 0.3;   // counted of a picture that took long, as the first one does
 
-Result<planning::Workcell> workcellOf(const planning::Scenario& scenario) {
-  if (scenario.robot != "longarm_one") return planning::loadWorkcell(scenario.robot);
-  return planning::loadBuiltInWorkcell(scenario.variant);
-}
-
 // To what the middle of the picture shows: a body, the ground, or nothing far away [m].
 double distanceAhead(const Pose& X_WC, const std::vector<planning::WorldObject>& objects) {
   const Eigen::Vector3d from = X_WC.translation(), ahead = X_WC.linear().col(2);
@@ -43,12 +38,16 @@ Result<std::unique_ptr<VirtualRobot>> VirtualRobot::create(const RobotOptions& o
   if (!scenario) return scenario.error();
   if (!options.variant.empty()) scenario->variant = options.variant;
   if (options.ideal) scenario->imperfections = planning::Imperfections::none();
-  const auto workcell = workcellOf(*scenario);
+  const auto workcell = planning::workcellOf(*scenario);
   if (!workcell) return workcell.error();
   auto body = RobotBody::create(*workcell, *scenario, options.seed);
   if (!body) return body.error();
   auto rig = CameraRig::load(*workcell);
   if (!rig) return rig.error();
+  for (const auto& object : scenario->objects) {
+    if (object.before.empty() || rig->has(object.before)) continue;
+    return Error{ErrorCode::kInvalidInput, scenario->path + ": object " + object.body.name + " is held before camera \"" + object.before + "\", which the robot does not have"};
+  }
   return std::unique_ptr<VirtualRobot>(
       new VirtualRobot(options, std::move(outlets), std::move(*body), std::move(*rig)));
 }
@@ -56,6 +55,12 @@ Result<std::unique_ptr<VirtualRobot>> VirtualRobot::create(const RobotOptions& o
 VirtualRobot::VirtualRobot(const RobotOptions& options, RobotOutlets outlets, std::unique_ptr<RobotBody> body,
                            CameraRig rig)
     : m_options(options), m_outlets(std::move(outlets)), m_body(std::move(body)), m_rig(std::move(rig)) {
+  const WorldSnapshot start = m_body->snapshot();
+  for (const auto& object : m_body->scenario().objects) {
+    if (object.before.empty()) continue;
+    m_spectators[object.before] = {start.X_WC.at(object.before) * m_rig.mount(object.before), m_rig.lens(object.before).fx};
+  }
+  showThings();
   std::function<void(double)> advance;
   if (options.lockstep) advance = [this](double seconds) { step(seconds); };
   m_services = std::make_unique<RobotServices>(*m_body, m_rig, advance, m_outlets.quit);
@@ -141,9 +146,14 @@ void VirtualRobot::takePictures() {
   m_next_render_s = now_s + std::min(m_renderer->lastDuration_s(), kLongestRest_s) / kRenderShare;
 }
 
+void VirtualRobot::showThings() {
+  for (const auto& [camera, spectator] : m_spectators) m_body->showTo(camera, spectator.X_WC, m_rig.lens(camera).fx / spectator.fx);
+}
+
 void VirtualRobot::tick() {
   m_body->tick();
   m_rig.tick(RobotBody::kTick_s);
+  showThings();
   m_protocol->afterTick();
   takePictures();
 }

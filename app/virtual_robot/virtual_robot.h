@@ -4,6 +4,7 @@
 /// VirtualRobot: body, cameras and protocol under one clock, without a socket.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -57,6 +58,7 @@ class VirtualRobot {
   VirtualRobot(const RobotOptions& options, RobotOutlets outlets, std::unique_ptr<RobotBody> body, CameraRig rig);
   void step(double seconds);
   void tick();
+  void showThings();
   void takePictures();
   PictureRequest requestFor(const std::vector<std::string>& cameras);
   void collect(Picture picture);
@@ -71,6 +73,11 @@ class VirtualRobot {
   std::mutex m_mutex;                    // of what the render thread hands over
   std::vector<Picture> m_ready;
   std::vector<std::string> m_complaints;
+  struct Spectator {                     // camera that something is held before, as it was at the start
+    Pose X_WC;
+    double fx;
+  };
+  std::map<std::string, Spectator> m_spectators;
   std::map<std::string, std::string> m_frozen;     // camera -> picture it repeats
   double m_next_render_s = 0;
   std::unique_ptr<RenderThread> m_renderer;        // ends first

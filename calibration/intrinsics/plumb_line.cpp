@@ -14,6 +14,7 @@ constexpr int kMaxIterations = 50;
 constexpr double kStep = 1e-5;             // of numeric derivatives; coefficients are of order 0.1
 constexpr double kConvergence = 1e-10;     // of the relative decrease
 constexpr double kTenth_px = 0.05;          // a tenth of a coefficient must move the points by more than this in all
+constexpr double kOpen_px = 3;             // a coefficient that moves points by more than this is worth a word
 constexpr double kSpread_px = 0.05;        // a misfit below it, with hardly any bend before, is no distortion
 
 double rms(const Eigen::VectorXd& r) { return r.size() > 0 ? std::sqrt(r.squaredNorm() / static_cast<double>(r.size())) : 0; }
@@ -68,6 +69,28 @@ struct Search {
   Eigen::VectorXd at, r;
   int iterations = 0;
 };
+
+struct Open {
+  int parameter = kK1;
+  double pixels = 0;
+};
+
+// The coefficient whose sigma moves a point of the lines furthest.
+Open openPart(const PlumbLineResult& result, const std::vector<PlumbLine>& lines) {
+  Open out;
+  for (const auto& line : lines) {
+    for (const auto& pixel : line) {
+      const auto n = result.camera.normalisedOfPixel(pixel);
+      LensProjection at;
+      if (!n || !projectWithDerivatives(result.camera, n->homogeneous(), &at)) continue;
+      for (int i = kK1; i < kK1 + result.coefficients; ++i) {
+        const double moved_px = at.d_lens.col(i).norm() * std::sqrt(result.covariance(i, i));
+        if (moved_px > out.pixels) out = {i, moved_px};
+      }
+    }
+  }
+  return out;
+}
 
 // Levenberg-Marquardt; the lines are fitted inside each evaluation.
 Status search(const vision::CameraModel& camera, const std::vector<PlumbLine>& lines, Search* s) {
@@ -144,6 +167,10 @@ Result<PlumbLineResult> straightenLines(const vision::CameraModel& start, const 
   const double dof = static_cast<double>(s.r.size()) - 2.0 * static_cast<double>(lines.size()) - coefficients;
   out.sigma_px = std::sqrt(s.r.squaredNorm() / dof);
   out.covariance.block(kK1, kK1, coefficients, coefficients) = (J->transpose() * *J).inverse() * out.sigma_px * out.sigma_px;
+  if (const Open open = openPart(out, lines); open.pixels > kOpen_px) {
+    out.warnings.push_back(std::string(lensParameterName(open.parameter)) + " is hardly determined by these lines: its sigma moves their points by up to " + formatFixed(open.pixels, 1) +
+                           " px. Lay lines that run the other way too, or estimate fewer coefficients");
+  }
   for (const auto& line : lines) {
     const auto d = straightness(out.camera, line);
     out.line_rms_px.push_back(rms(Eigen::Map<const Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size()))));

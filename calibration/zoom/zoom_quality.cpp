@@ -5,16 +5,19 @@
 
 #include <Eigen/Dense>
 
+#include "vision/camera/zoom_doubt.h"
+
 namespace longarm::calibration {
 namespace {
 
 using vision::ZoomCamera;
 using vision::ZoomNode;
 
-std::vector<ZoomNode> sortedNodes(const ZoomCamera& camera) {
-  auto nodes = camera.nodes;
-  std::sort(nodes.begin(), nodes.end(), [](const ZoomNode& a, const ZoomNode& b) { return a.zoom < b.zoom; });
-  return nodes;
+std::vector<double> sortedSettings(const ZoomCamera& camera) {
+  std::vector<double> settings;
+  for (const auto& node : camera.nodes) settings.push_back(node.zoom);
+  std::sort(settings.begin(), settings.end());
+  return settings;
 }
 
 Eigen::Matrix3d rotationOf(const ZoomNode& node) { return expSO3({node.exterior[3], node.exterior[4], node.exterior[5]}); }
@@ -57,19 +60,14 @@ const char* toString(TrafficLight light) {
 }
 
 std::vector<ZoomMiss> leaveOneOut(const ZoomCamera& camera) {
-  const auto nodes = sortedNodes(camera);
   std::vector<ZoomMiss> out;
-  for (std::size_t k = 1; k + 1 < nodes.size(); ++k) {
-    ZoomCamera others{camera.name, nodes};
-    others.nodes.erase(others.nodes.begin() + static_cast<std::ptrdiff_t>(k));
-    const auto predicted = vision::zoomAt(others, nodes[k].zoom);
-    if (!predicted) continue;
+  for (const auto& prediction : vision::predictFromOthers(camera)) {
     ZoomMiss miss;
-    miss.zoom = nodes[k].zoom;
-    miss.focal_error = predicted->interior[0] / nodes[k].interior[0] - 1;
-    miss.boresight_px = vision::boresightOf(*predicted) - vision::boresightOf(nodes[k]);
-    miss.error_px = pictureError(nodes[k], *predicted);
-    miss.nominal = vision::isNominal(nodes[k]);
+    miss.zoom = prediction.truth.zoom;
+    miss.focal_error = prediction.focalError();
+    miss.boresight_px = prediction.boresightError();
+    miss.error_px = pictureError(prediction.truth, prediction.predicted);
+    miss.nominal = vision::isNominal(prediction.truth);
     miss.light = lightOf(miss);
     out.push_back(miss);
   }
@@ -77,16 +75,16 @@ std::vector<ZoomMiss> leaveOneOut(const ZoomCamera& camera) {
 }
 
 std::vector<double> advisedSettings(const ZoomCamera& camera, const std::vector<ZoomMiss>& misses) {
-  const auto nodes = sortedNodes(camera);
+  const auto settings = sortedSettings(camera);
   auto worst = misses;
   std::stable_sort(worst.begin(), worst.end(), [](const ZoomMiss& a, const ZoomMiss& b) { return a.error_px > b.error_px; });
   std::vector<double> out;
   for (const auto& miss : worst) {
     if (miss.light == TrafficLight::kGreen) continue;
-    for (std::size_t k = 1; k + 1 < nodes.size(); ++k) {
-      if (nodes[k].zoom != miss.zoom) continue;
-      const bool right = nodes[k + 1].zoom - nodes[k].zoom > nodes[k].zoom - nodes[k - 1].zoom;
-      const double at = 0.5 * (nodes[k].zoom + nodes[right ? k + 1 : k - 1].zoom);
+    for (std::size_t k = 1; k + 1 < settings.size(); ++k) {
+      if (settings[k] != miss.zoom) continue;
+      const bool right = settings[k + 1] - settings[k] > settings[k] - settings[k - 1];
+      const double at = 0.5 * (settings[k] + settings[right ? k + 1 : k - 1]);
       if (std::find(out.begin(), out.end(), at) == out.end()) out.push_back(at);
     }
   }

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "planning/world/json_reader.h"
 #include "planning/world/mesh_file.h"
+#include "planning/world/workcell.h"
 #include "vision/camera/bounded_yaml.h"
 
 namespace longarm::planning {
@@ -86,6 +87,7 @@ void readRoute(FieldReader& reader, ScenarioObject& object) {
     reader.adopt(stop.status());
   }
   object.travel_s = reader.number("travel_s", object.travel_s, 0.1, 3600);
+  object.before = reader.text("before", "");
   if (!object.route.empty()) object.body.X_WO = object.route.front().X_WO;
 }
 
@@ -262,12 +264,12 @@ void readPlaces(FieldReader& reader, const json& list, ScenarioStep& step) {
   }
 }
 
-void readArguments(FieldReader& reader, ScenarioStep& step) {
-  const json* map = reader.map("arguments");
+void readNumbers(FieldReader& reader, const char* key, std::map<std::string, double>* out) {
+  const json* map = reader.map(key);
   if (map == nullptr) return;
   for (const auto& [name, value] : map->items()) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) return reader.fail("arguments." + name + " is no finite number");
-    step.arguments[name] = value.get<double>();
+    if (!value.is_number() || !std::isfinite(value.get<double>())) return reader.fail(std::string(key) + "." + name + " is no finite number");
+    (*out)[name] = value.get<double>();
   }
 }
 
@@ -287,7 +289,7 @@ void readTask(FieldReader& file, Scenario& scenario) {
     if (step.at.empty() && !step.object.empty() && !std::holds_alternative<Cylinder>(scenario.object(step.object)->body.shape)) {
       reader.fail("at is missing: where on \"" + step.object + "\" to click, in halves of its size");
     }
-    readArguments(reader, step);
+    readNumbers(reader, "arguments", &step.arguments);
     const std::string gripper = reader.text("gripper", "");
     if (!gripper.empty() && gripper != "close") reader.fail("gripper is \"" + gripper + "\"; expected close");
     step.close_gripper = !gripper.empty();
@@ -374,6 +376,11 @@ Pose ScenarioObject::onRoute(double time_s) const {
   return route.front().X_WO;
 }
 
+Result<Workcell> workcellOf(const Scenario& scenario) {
+  if (scenario.robot != Scenario().robot) return loadWorkcell(scenario.robot);
+  return loadBuiltInWorkcell(scenario.variant);
+}
+
 const ScenarioObject* Scenario::object(const std::string& wanted) const {
   for (const ScenarioObject& candidate : objects) {
     if (candidate.body.name == wanted) return &candidate;
@@ -403,6 +410,7 @@ Result<Scenario> parseScenario(const std::string& text, const std::string& path)
   scenario.variant = file.text("variant", "");
   scenario.start_pose = file.text("start_pose", scenario.start_pose);
   readSlope(file, scenario);
+  readNumbers(file, "start_joints", &scenario.start_joints);
   scenario.ground = file.text("ground", scenario.ground);
   readObjects(file, fs::path(path).parent_path().string(), scenario);
   readMechanisms(file, scenario);

@@ -17,6 +17,8 @@
 
 namespace longarm::planning {
 
+struct Workcell;
+
 /// A place where something that is carried about rests for a while.
 struct RouteStop {
   Pose X_WO = Pose::Identity();
@@ -27,13 +29,17 @@ struct RouteStop {
 struct ScenarioObject {
   WorldObject body;
   /// "wood", "concrete", "metal", "checker", "carton", "noise", "chessboard" (9 x 6 inner corners of 30 mm on a face of
-  /// 0.36 x 0.27 m) or empty: plain.
+  /// 0.36 x 0.27 m), "dots" (of 12 mm, 40 mm apart, the first 20 mm from the edges) or empty: plain.
   std::string surface;
   bool graspable = false;                ///< The gripper can close on it (cylinders and boxes).
   bool slides = false;                   ///< Pushed from the side it slides over what it stands on (boxes and cylinders).
   /// Somebody carries it from stop to stop and begins again; empty: it stays at body.X_WO.
   std::vector<RouteStop> route;
   double travel_s = 1;                   ///< From one stop to the next.
+  /// Camera that it is held before; empty: the stops are in the world frame.  Else they are in that camera's optical frame
+  /// as it stands at the start, and further away by as much as its lens has magnified since: the thing keeps its size in
+  /// the picture.
+  std::string before;
 
   /// Where a route brings it.  @pre route is not empty
   Pose onRoute(double time_s) const;
@@ -124,6 +130,7 @@ struct Scenario {
   std::vector<ScenarioGoal> goals;
   std::vector<ScenarioStep> task;        ///< How an operator would do it; empty: by Grab Pipe on what the goals want grasped.
   std::string start_pose = "look_ahead"; ///< Canned pose of the workcell.
+  std::map<std::string, double> start_joints;      ///< Joints that start elsewhere than that pose has them [rad or m].
   std::optional<RandomPipe> random_pipe;
 
   const ScenarioObject* object(const std::string& name) const;         ///< Null if there is none.
@@ -142,6 +149,9 @@ std::vector<ScenarioInfo> listScenarios();
 Result<Scenario> loadScenario(const std::string& path_or_name);
 /// The same from text; `path` is used in messages and for relative meshes.
 Result<Scenario> parseScenario(const std::string& text, const std::string& path);
+
+/// The workcell of the robot that a scenario is for.  @returns as loadWorkcell.
+Result<Workcell> workcellOf(const Scenario& scenario);
 
 /// The scenario with its random_pipe drawn by `seed` (0 or no random_pipe: unchanged): the pipe's pose and length, and its
 /// table and stands under it.  Same seed, same world.  Pure function.

@@ -1,5 +1,6 @@
 #include "session/calibration/board_collection.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/text.h"
@@ -8,6 +9,8 @@
 namespace longarm::session {
 
 namespace {
+
+constexpr double kSameZoom = 0.005;                // Settings nearer than this are one lens.
 
 std::string sizeText(const cv::Mat& image) { return std::to_string(image.cols) + " x " + std::to_string(image.rows); }
 
@@ -42,10 +45,22 @@ Status BoardCollection::add(BoardPicture picture) {
   return {};
 }
 
+std::optional<double> BoardCollection::zoom() const {
+  for (auto picture = m_pictures.rbegin(); picture != m_pictures.rend(); ++picture) {
+    if (picture->view && picture->included) return picture->zoom;
+  }
+  return std::nullopt;
+}
+
+bool BoardCollection::sameZoom(const std::optional<double>& a, const std::optional<double>& b) {
+  return a.has_value() == b.has_value() && (!a || std::abs(*a - *b) < kSameZoom);
+}
+
 std::vector<std::size_t> BoardCollection::usable() const {
+  const auto newest = zoom();
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < m_pictures.size(); ++i) {
-    if (m_pictures[i].view && m_pictures[i].included) out.push_back(i);
+    if (m_pictures[i].view && m_pictures[i].included && sameZoom(m_pictures[i].zoom, newest)) out.push_back(i);
   }
   return out;
 }
@@ -78,6 +93,7 @@ std::vector<Eigen::Vector2d> IntrinsicsOutcome::residuals(std::size_t view) cons
 Result<IntrinsicsOutcome> solveBoards(const BoardCollection& boards, const calibration::LensChoice& lens) {
   if (const std::string why = boards.whyNotReady(); !why.empty()) return {ErrorCode::kRefused, why};
   IntrinsicsOutcome out;
+  out.zoom = boards.zoom();
   out.picture = boards.usable();
   for (const std::size_t i : out.picture) out.views.push_back(*boards.pictures()[i].view);
   calibration::IntrinsicsOptions options;

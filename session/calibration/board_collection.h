@@ -24,6 +24,7 @@ struct BoardPicture {
   std::optional<calibration::BoardView> view;      ///< Empty: no board was found.
   std::string why;                                 ///< Then: why not.
   bool included = true;                            ///< The operator's choice.
+  std::optional<double> zoom;                      ///< Setting of the lens, 0 ... 1; empty: fixed, or not known.
 };
 
 /// Searches a picture for the board; an empty image is read from the file of this name first.
@@ -44,8 +45,12 @@ class BoardCollection {
   void remove(std::size_t index) { m_pictures.erase(m_pictures.begin() + static_cast<std::ptrdiff_t>(index)); }
   void clear() { m_pictures.clear(); }
 
-  /// Indices of the pictures that have a board and are included.
+  /// Indices of the pictures that have a board, are included, and were taken at the newest setting of the zoom: one lens.
   std::vector<std::size_t> usable() const;
+  /// Setting of the newest picture with a board that is included; empty: its lens is fixed, or there is none.
+  std::optional<double> zoom() const;
+  /// Whether two pictures were taken through the same lens.
+  static bool sameZoom(const std::optional<double>& a, const std::optional<double>& b);
   /// Why there is nothing to solve yet; empty: there is.
   std::string whyNotReady() const;
 
@@ -58,6 +63,7 @@ class BoardCollection {
 /// What a collection gives.
 struct IntrinsicsOutcome {
   calibration::IntrinsicsResult result;
+  std::optional<double> zoom;                      ///< Setting of the lens; empty: fixed, or not known.
   std::vector<std::size_t> picture;                ///< Of each view of `result`: index in the collection.
   std::vector<calibration::BoardView> views;       ///< In the same order.
   calibration::Coverage coverage;

@@ -26,6 +26,10 @@ bool sameSize(const vision::CameraModel& a, const vision::CameraModel& b) {
   return a.width <= 0 || b.width <= 0 || (a.width == b.width && a.height == b.height);
 }
 
+Error oneLens(const std::string& camera) {
+  return {ErrorCode::kInvalidInput, "Camera " + camera + " zooms: one lens does not describe it. Add this calibration to its table on the page Zoom."};
+}
+
 // Covariance of lens and pose together; what the two files say of each other's part is not kept.
 Eigen::MatrixXd joined(const vision::CameraFile& file, const CameraChange& change) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(16, 16);
@@ -96,12 +100,20 @@ Result<vision::CameraFile> CalibrationController::fileInUse(const std::string& c
   return file;
 }
 
+bool CalibrationController::hasTable(const std::string& camera) const {
+  const auto* spec = m_document.workcell() ? m_document.workcell()->camera(camera) : nullptr;
+  if (spec == nullptr) return false;
+  const auto calibration = calibrationOf(*spec);
+  return calibration && (*calibration)->hasTable();
+}
+
 std::optional<CalibrationRecord> CalibrationController::recordInUse(const std::string& camera) const {
   if (!m_plain) return std::nullopt;
   return m_library.find(m_library.inUse(m_plain->name, camera));
 }
 
 Result<vision::CameraFile> CalibrationController::changed(const CameraChange& change) const {
+  if (change.lens && hasTable(change.camera)) return oneLens(change.camera);
   auto file = fileInUse(change.camera);
   if (!file) return file.error();
   if (change.lens) {
@@ -186,7 +198,7 @@ QString CalibrationController::whyWorse(const CameraChange& change) const {
 // A camera with a table keeps its lens at every setting; all settings move with the mount.
 Result<CalibrationRecord> CalibrationController::keepMount(const CameraChange& change, CalibrationRecord record) {
   if (change.lens || !change.X_LC) {
-    return Error{ErrorCode::kInvalidInput, "Camera " + change.camera + " zooms: one lens does not describe it. Add this calibration to its table on the page Zoom."};
+    return oneLens(change.camera);
   }
   const auto now = fileInUse(change.camera, change.zoom);
   if (!now) return now.error();
@@ -205,9 +217,7 @@ Result<CalibrationRecord> CalibrationController::keep(const CameraChange& change
   record.wall_time_s = wallTime_s();
   record.observations = change.observations;
   record.rms_px = change.rms_px;
-  const auto* spec = m_document.workcell() ? m_document.workcell()->camera(change.camera) : nullptr;
-  const auto calibration = spec != nullptr ? calibrationOf(*spec) : Result<std::shared_ptr<const vision::CameraCalibration>>(ErrorCode::kNotFound, "");
-  if (calibration && (*calibration)->hasTable()) return keepMount(change, std::move(record));
+  if (hasTable(change.camera)) return keepMount(change, std::move(record));
   const auto file = changed(change);
   if (!file) return file.error();
   record.uncertainty_px = meanUncertainty(*file).value_or(-1);

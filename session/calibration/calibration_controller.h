@@ -74,6 +74,7 @@ class CalibrationController final : public QObject {
   std::optional<Placement> placementInUse(Subject subject, const std::string& name) const;
   bool knows(Subject subject, const std::string& name) const;
 
+  bool hasTable(const std::string& camera) const;
   Result<CalibrationRecord> keep(const CameraChange& change);
   Result<CalibrationRecord> keepMount(const CameraChange& change, CalibrationRecord record);
   Result<CalibrationRecord> keep(const PlaceChange& change);

@@ -32,7 +32,7 @@ void IntrinsicsController::setBoard(const BoardSpec& board) {
   m_capture.reset();
   m_live.reset();
   std::deque<Waiting> again;
-  for (const auto& picture : m_boards.pictures()) again.push_back({picture.name, picture.image, picture.included});
+  for (const auto& picture : m_boards.pictures()) again.push_back({picture.name, picture.image, picture.included, picture.zoom});
   for (auto& waiting : m_waiting) again.push_back(std::move(waiting));
   m_boards.clear();
   m_waiting = std::move(again);
@@ -48,7 +48,7 @@ void IntrinsicsController::setLens(const calibration::LensChoice& lens) {
 }
 
 void IntrinsicsController::addFiles(const QStringList& paths) {
-  for (const QString& path : paths) m_waiting.push_back({path.toStdString(), {}, true});
+  for (const QString& path : paths) m_waiting.push_back({path.toStdString(), {}, true, {}});
   searchNext();
   Q_EMIT changed();
 }
@@ -61,10 +61,13 @@ void IntrinsicsController::searchNext() {
   const bool hint = m_boards.pictures().empty();   // it takes seconds, so only once
   m_jobs.run<BoardPicture>(
       this, [next, spec = m_board, hint] { return search(next.name, next.image, spec, hint); },
-      [this, included = next.included, generation = m_generation](Result<BoardPicture> picture) {
+      [this, included = next.included, zoom = next.zoom, generation = m_generation](Result<BoardPicture> picture) {
         if (generation != m_generation) return;
         m_searching = false;
-        if (picture) picture->included = included;
+        if (picture) {
+          picture->included = included;
+          picture->zoom = zoom;
+        }
         take(std::move(picture));
         searchNext();
         Q_EMIT changed();
@@ -85,7 +88,7 @@ void IntrinsicsController::take(Result<BoardPicture> picture) {
   }
 }
 
-void IntrinsicsController::offerLive(const cv::Mat& picture, double stamp_s) {
+void IntrinsicsController::offerLive(const cv::Mat& picture, double stamp_s, std::optional<double> zoom) {
   if (m_looking || picture.empty()) return;
   m_looking = true;
   m_jobs.run<Seen>(
@@ -98,15 +101,27 @@ void IntrinsicsController::offerLive(const cv::Mat& picture, double stamp_s) {
         out.board = std::move(*board);
         return out;
       },
-      [this, picture, stamp_s, generation = m_generation](Result<Seen> result) {
+      [this, picture, stamp_s, zoom, generation = m_generation](Result<Seen> result) {
         m_looking = false;
-        if (generation == m_generation) seen(picture, stamp_s, std::move(result));
+        if (generation == m_generation) seen(picture, stamp_s, zoom, std::move(result));
       });
 }
 
-void IntrinsicsController::seen(const cv::Mat& picture, double stamp_s, Result<Seen> result) {
+// Through another lens a place of the board is new again.
+void IntrinsicsController::watchZoom(std::optional<double> zoom) {
+  if (BoardCollection::sameZoom(m_capture_zoom, zoom)) return;
+  m_capture_zoom = zoom;
+  m_capture.reset();
+  for (const auto& picture : m_boards.pictures()) {
+    if (picture.view && BoardCollection::sameZoom(picture.zoom, zoom)) m_capture.kept(*picture.view);
+  }
+}
+
+void IntrinsicsController::seen(const cv::Mat& picture, double stamp_s, std::optional<double> zoom, Result<Seen> result) {
+  watchZoom(zoom);
   LiveBoard live;
   live.image = picture;
+  live.zoom = zoom;
   if (result && result->board) {
     live.verdict = m_capture.offer(*result->board, result->sharpness, picture.cols, stamp_s);
     live.board = std::move(result->board);
@@ -141,6 +156,7 @@ void IntrinsicsController::capture() {
   picture.name = "live " + std::to_string(++m_captured);
   picture.image = m_live->image;
   picture.view = m_live->board;
+  picture.zoom = m_live->zoom;
   picture.view->name = picture.name;
   const QString name = QString::fromStdString(picture.name);
   const std::size_t before = m_boards.pictures().size();

@@ -19,6 +19,7 @@ namespace longarm::session {
 /// The newest live picture that was searched.
 struct LiveBoard {
   cv::Mat image;
+  std::optional<double> zoom;                      ///< Setting of the lens; empty: fixed, or not known.
   std::optional<calibration::BoardView> board;
   AutoCapture::Verdict verdict = AutoCapture::Verdict::kNoBoard;
 };
@@ -41,7 +42,8 @@ class IntrinsicsController final : public QObject {
   /// One after the other; those without the board stay in the list with the reason.
   void addFiles(const QStringList& paths);
   /// A live picture; dropped while the one before is being searched.
-  void offerLive(const cv::Mat& picture, double stamp_s);
+  /// @param zoom Setting of its lens; empty: fixed, or not known.
+  void offerLive(const cv::Mat& picture, double stamp_s, std::optional<double> zoom = {});
   bool autoCapture() const { return m_auto; }
   void setAutoCapture(bool on) { m_auto = on; }
   QString whyNotCapture() const;
@@ -78,6 +80,7 @@ class IntrinsicsController final : public QObject {
     std::string name;
     cv::Mat image;                                 ///< Empty: read the file of this name.
     bool included = true;
+    std::optional<double> zoom;
   };
   struct Seen {
     std::optional<calibration::BoardView> board;
@@ -85,7 +88,8 @@ class IntrinsicsController final : public QObject {
   };
   void searchNext();
   void take(Result<BoardPicture> picture);
-  void seen(const cv::Mat& picture, double stamp_s, Result<Seen> result);
+  void seen(const cv::Mat& picture, double stamp_s, std::optional<double> zoom, Result<Seen> result);
+  void watchZoom(std::optional<double> zoom);
   void collectionChanged();
   void solve();
   void finishSolve(Result<IntrinsicsOutcome>& outcome);
@@ -98,6 +102,7 @@ class IntrinsicsController final : public QObject {
   bool m_searching = false, m_solving = false, m_stale = false, m_looking = false, m_auto = true;
   int m_generation = 0;                            // Of searches: those of an earlier board or collection are dropped.
   AutoCapture m_capture;
+  std::optional<double> m_capture_zoom;            // setting through which its places were seen
   std::optional<LiveBoard> m_live;
   std::optional<IntrinsicsOutcome> m_outcome;
   QString m_why;

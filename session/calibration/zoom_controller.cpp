@@ -9,6 +9,7 @@
 namespace longarm::session {
 
 using calibration::TrafficLight;
+using calibration::ZoomLens;
 using vision::ZoomCamera;
 using vision::ZoomNode;
 
@@ -18,7 +19,7 @@ constexpr double kSameSetting = 1e-6;
 constexpr double kPlay = 0.05;             // So far below a setting the lens goes first, to come to it from there.
 constexpr double kLargestRefit_px = 1;
 
-bool bySetting(const ZoomNode& a, const ZoomNode& b) { return a.zoom < b.zoom; }
+bool bySetting(const ZoomLens& a, const ZoomLens& b) { return a.node.zoom < b.node.zoom; }
 
 }  // namespace
 
@@ -26,9 +27,10 @@ ZoomController::ZoomController(CalibrationController& calibration, JobRunner& jo
     : QObject(parent), m_calibration(calibration), m_jobs(jobs) {}
 
 void ZoomController::take(ZoomCamera table, std::vector<std::string> warnings) {
+  m_lenses.clear();
+  for (const auto& node : table.nodes) m_lenses.push_back({node, {}});
   m_table = std::move(table);
-  std::sort(m_table.nodes.begin(), m_table.nodes.end(), bySetting);
-  m_warnings = std::move(warnings);
+  m_file_warnings = std::move(warnings);
   judge();
 }
 
@@ -52,46 +54,70 @@ void ZoomController::openFolder(const QString& folder) {
 
 void ZoomController::clear() { take({}, {}); }
 
-QString ZoomController::whyNotAddLens(double zoom) const {
+double ZoomController::lastSetting(const std::string& camera) const {
+  const auto& workcell = m_calibration.plainWorkcell();
+  const auto* spec = workcell ? workcell->camera(camera) : nullptr;
+  return spec != nullptr && spec->digital_zoom.factor > 1 ? spec->digital_zoom.from : 1;
+}
+
+QString ZoomController::whyNotAddLens(const std::string& camera, double zoom) const {
   if (!(zoom >= 0 && zoom <= 1)) return tr("%1 is no setting from 0 to 1.").arg(zoom);
-  return m_calibration.intrinsics().whyNotSave();
+  if (const double last = lastSetting(camera); zoom > last + kSameSetting) {
+    return tr("beyond %1 the picture is only enlarged, which needs no calibration.").arg(last);
+  }
+  if (const QString why = m_calibration.intrinsics().whyNotSave(); !why.isEmpty()) return why;
+  const auto taken = m_calibration.intrinsics().outcome()->zoom;
+  if (taken && !BoardCollection::sameZoom(taken, zoom)) {
+    return tr("the board was last seen at zoom %1, not %2: turn the lens there and show it the board.").arg(QString::number(*taken, 'f', 3), QString::number(zoom, 'f', 3));
+  }
+  return {};
+}
+
+Pose ZoomController::mountInUse(const std::string& camera, double zoom) const {
+  auto file = m_calibration.fileInUse(camera, zoom);
+  if (!file) file = m_calibration.fileInUse(camera, 0);
+  return file && file->pose ? file->pose->pose : Pose::Identity();
 }
 
 void ZoomController::addLens(const std::string& camera, double zoom) {
-  if (const QString why = whyNotAddLens(zoom); !why.isEmpty()) {
+  if (const QString why = whyNotAddLens(camera, zoom); !why.isEmpty()) {
     Q_EMIT failed(why);
     return;
   }
+  const auto& result = m_calibration.intrinsics().outcome()->result;
   double refit_px = 0;
-  const auto lens = calibration::withoutK3(m_calibration.intrinsics().outcome()->result.camera, &refit_px);
+  const auto lens = calibration::withoutK3(result.camera, &refit_px);
   if (refit_px > kLargestRefit_px) {
     Q_EMIT failed(tr("Without k3, which a zoom file cannot hold, the lens is up to %1 px off: estimate it with k1 k2 p1 p2 at most.").arg(refit_px, 0, 'f', 2));
     return;
   }
-  ZoomNode node;
+  ZoomLens added;
+  added.covariance = result.covariance;
+  ZoomNode& node = added.node;
   node.zoom = zoom;
   node.interior = {lens.fx, lens.fy, lens.skew, lens.cx, lens.cy, lens.distortion[0], lens.distortion[1], lens.distortion[2], lens.distortion[3]};
-  const auto file = m_calibration.fileInUse(camera);
-  if (file && file->pose) {
-    const Pose C_ext = file->pose->pose.inverse();
-    const Eigen::Vector3d turn = logSO3(C_ext.linear());
-    node.exterior = {C_ext.translation().x(), C_ext.translation().y(), C_ext.translation().z(), turn.x(), turn.y(), turn.z()};
-  }
-  auto& nodes = m_table.nodes;
-  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [zoom](const ZoomNode& n) { return std::abs(n.zoom - zoom) < kSameSetting; }), nodes.end());
-  nodes.push_back(node);
-  std::sort(nodes.begin(), nodes.end(), bySetting);
+  const Pose C_ext = mountInUse(camera, zoom).inverse();
+  const Eigen::Vector3d turn = logSO3(C_ext.linear());
+  node.exterior = {C_ext.translation().x(), C_ext.translation().y(), C_ext.translation().z(), turn.x(), turn.y(), turn.z()};
+  m_lenses.erase(std::remove_if(m_lenses.begin(), m_lenses.end(), [zoom](const ZoomLens& l) { return std::abs(l.node.zoom - zoom) < kSameSetting; }), m_lenses.end());
+  m_lenses.push_back(added);
   if (m_table.name.empty()) m_table.name = camera;
   judge();
 }
 
 void ZoomController::removeNode(std::size_t node) {
-  if (node >= m_table.nodes.size()) return;
-  m_table.nodes.erase(m_table.nodes.begin() + static_cast<std::ptrdiff_t>(node));
+  if (node >= m_lenses.size()) return;
+  m_lenses.erase(m_lenses.begin() + static_cast<std::ptrdiff_t>(node));
   judge();
 }
 
 void ZoomController::judge() {
+  std::sort(m_lenses.begin(), m_lenses.end(), bySetting);
+  const auto joined = calibration::joinZoom(m_lenses);
+  m_table.nodes.clear();
+  for (const auto& lens : joined.lenses) m_table.nodes.push_back(lens.node);
+  m_warnings = m_file_warnings;
+  m_warnings.insert(m_warnings.end(), joined.warnings.begin(), joined.warnings.end());
   m_misses = calibration::leaveOneOut(m_table);
   m_advised = calibration::advisedSettings(m_table, m_misses);
   if (m_table.nodes.size() == 2 && m_advised.empty()) m_advised = {(m_table.nodes[0].zoom + m_table.nodes[1].zoom) / 2};

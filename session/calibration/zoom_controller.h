@@ -9,6 +9,7 @@
 #include <QObject>
 #include <QString>
 
+#include "calibration/zoom/zoom_join.h"
 #include "calibration/zoom/zoom_quality.h"
 #include "session/calibration/calibration_controller.h"
 #include "session/controllers/job_runner.h"
@@ -31,8 +32,11 @@ class ZoomController final : public QObject {
   const std::vector<std::string>& warnings() const { return m_warnings; }
 
   /// The newest result of the board wizard as the node at `zoom`; the mount is the one in use.  Replaces a node there.
-  QString whyNotAddLens(double zoom) const;
+  /// Principal points are joined with those of the other settings (calibration::joinZoom).
+  QString whyNotAddLens(const std::string& camera, double zoom) const;
   void addLens(const std::string& camera, double zoom);
+  /// The setting at which the lens of a camera is at its long end: beyond, its picture is only enlarged.
+  double lastSetting(const std::string& camera) const;
   void removeNode(std::size_t node);
 
   /// Every node but the first and last, predicted from the others.
@@ -57,13 +61,15 @@ class ZoomController final : public QObject {
 
  private:
   void take(vision::ZoomCamera table, std::vector<std::string> warnings);
+  Pose mountInUse(const std::string& camera, double zoom) const;
   void judge();
   vision::ZoomFile file(const std::string& name) const;
 
   CalibrationController& m_calibration;
   JobRunner& m_jobs;
-  vision::ZoomCamera m_table;
-  std::vector<std::string> m_warnings;
+  std::vector<calibration::ZoomLens> m_lenses;     // as calibrated, each by itself; sorted
+  vision::ZoomCamera m_table;                      // joined
+  std::vector<std::string> m_file_warnings, m_warnings;
   std::vector<calibration::ZoomMiss> m_misses;
   std::vector<double> m_advised;
 };

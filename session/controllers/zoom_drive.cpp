@@ -48,6 +48,12 @@ std::optional<double> ZoomDrive::zoom(const QString& camera) const {
   return zoom ? *zoom : std::nullopt;
 }
 
+std::optional<double> ZoomDrive::zoomAt(const QString& camera, double stamp_s) const {
+  if (m_feed == nullptr || !zooms(camera)) return {};
+  const auto zoom = m_feed->zoomAt(camera.toStdString(), stamp_s);
+  return zoom ? *zoom : std::nullopt;
+}
+
 std::optional<double> ZoomDrive::focus(const QString& camera) const {
   return m_feed == nullptr ? std::nullopt : m_feed->focus(camera.toStdString());
 }

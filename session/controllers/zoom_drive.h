@@ -33,6 +33,8 @@ class ZoomDrive final : public QObject {
   /// Newest settings, 0 ... 1; empty while unknown.
   std::optional<double> zoom(const QString& camera) const;
   std::optional<double> focus(const QString& camera) const;
+  /// The zoom of a camera that has one, when a picture was exposed.  @param stamp_s On the robot's clock.
+  std::optional<double> zoomAt(const QString& camera, double stamp_s) const;
   /// How much larger things are than at the wide end; empty outside the calibrated settings.
   std::optional<double> magnification(const QString& camera) const;
 

@@ -79,6 +79,32 @@ planning::Scenario railScene() {
   return scenario;
 }
 
+TEST(CarriedObject, StandsBeforeItsCameraAndStepsBackAsTheLensTurnsIn) {
+  planning::Scenario scenario;
+  planning::ScenarioObject board;
+  board.body.name = "board";
+  board.before = "ptz_left";
+  board.route = {{poseFromRpy({0.1, -0.05, 0.5}, {0, 0, 0}), 2}};
+  scenario.objects = {board};
+  TrueWorld world(scenario);
+  const Pose X_WC = poseFromRpy({1, 2, 0.8}, {-1.5707963267948966, 0, -1.5707963267948966});
+  const auto pixels = [&](double focal) {
+    const Vector3d p = X_WC.inverse() * world.objects()[0].body.X_WO.translation();
+    return Vector3d(focal * p.x() / p.z(), focal * p.y() / p.z(), p.z());
+  };
+  world.showTo("ptz_left", X_WC, 1);
+  world.step(0.01);
+  const Vector3d wide = pixels(743);
+  EXPECT_NEAR(wide.z(), 0.5, 1e-12);
+  EXPECT_NEAR(wide.x(), 743 * 0.2, 1e-9);
+  world.showTo("ptz_left", X_WC, 8);
+  world.step(0.01);
+  const Vector3d narrow = pixels(8 * 743);
+  EXPECT_NEAR(narrow.z(), 4, 1e-12);
+  EXPECT_NEAR(narrow.x(), wide.x(), 1e-9) << "as large in the picture as before";
+  EXPECT_NEAR(narrow.y(), wide.y(), 1e-9);
+}
+
 TEST(GuidedObject, IsHeldLedLostAndStays) {
   const auto scenario = railScene();
   TrueWorld world(scenario);

@@ -195,6 +195,34 @@ TEST(DotFinder, SixClicksMatchTheWholePanel) {
   for (const auto& match : *matches) EXPECT_LT((match.pixel - truth[match.point]).norm(), 1.0) << fixture.points[match.point].name;
 }
 
+TEST(DotFinder, SevenClicksMatchThroughABentLens) {
+  Fixture fixture;
+  for (int step = 0; step < 3; ++step) {
+    for (int i = 0; i < 32; ++i) {
+      fixture.points.push_back({std::to_string(fixture.points.size()), {-0.22 + 0.16 * step + 0.04 * (i % 4), 0.14 - 0.04 * (i / 4), 0.06 * step}});
+    }
+  }
+  auto camera = cameraOf(741, 740, 322, 238);
+  camera.distortion = {-0.28, 0.1, 0.0004, -0.0003, 0};
+  for (const double turn : {-0.3, -0.1, 0.2}) {
+    const Pose X_CW = poseOf({3.0, 0.05, turn}, {0, 0, 0.72});
+    std::vector<Eigen::Vector2d> truth;
+    std::vector<calibration::Dot> dots;
+    for (const auto& point : fixture.points) {
+      const auto pixel = camera.project(X_CW * point.xyz);
+      ASSERT_TRUE(pixel.ok());
+      truth.push_back(*pixel);
+      dots.push_back({*pixel, 6});
+    }
+    std::vector<DotMatch> by_hand;
+    for (const std::size_t i : {0U, 31U, 35U, 60U, 64U, 95U, 18U}) by_hand.push_back({i, truth[i], true});
+    const auto matches = calibration::matchFixture(fixture, dots, by_hand, 640, 480);
+    ASSERT_TRUE(matches.ok()) << matches.error().message;
+    EXPECT_EQ(matches->size(), fixture.points.size()) << "turned by " << turn;
+    for (const auto& match : *matches) EXPECT_LT((match.pixel - truth[match.point]).norm(), 1e-9) << match.point;
+  }
+}
+
 TEST(FixtureFile, ReadsTablesListsAndPanels) {
   const auto csv = calibration::parseFixture("name,x,y,z\na,0,0,0\nb,1,0,0\nc,0,1,0\nd,0,0,1\ne,1,1,0\nf,1,0,1\n", "posts.csv");
   ASSERT_TRUE(csv.ok()) << csv.error().message;

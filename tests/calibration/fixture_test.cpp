@@ -213,6 +213,23 @@ void expectRefused(const Result<FixtureResult>& result, const std::string& word)
   EXPECT_NE(result.error().message.find(word), std::string::npos) << result.error().message;
 }
 
+TEST(Fixture, ADotHiddenInPartIsLeftOutAndTold) {
+  Random random(38);
+  BoardView points = fixturePicture(&random, 0.1);
+  const auto clean = calibrateFixture(points, 640, 480);
+  ASSERT_TRUE(clean.ok()) << clean.error().message;
+  EXPECT_EQ(std::count(clean->left_out.begin(), clean->left_out.end(), true), 0);
+  points.corners[17].pixel += Eigen::Vector2d(-1.6, 0.4);          // seen by half
+  const auto result = calibrateFixture(points, 640, 480);
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(std::count(result->left_out.begin(), result->left_out.end(), true), 1);
+  EXPECT_TRUE(result->left_out[17]);
+  EXPECT_NEAR(result->residual_px[17], 1.65, 0.4);
+  EXPECT_LT(std::abs(result->camera.fx - clean->camera.fx), 0.5 * std::sqrt(clean->covariance(0, 0))) << "it moves nothing";
+  ASSERT_FALSE(result->warnings.empty());
+  EXPECT_NE(result->warnings.back().find("1 of 140 points misses by more than 4 sigma"), std::string::npos) << result->warnings.back();
+}
+
 TEST(Fixture, RefusesFivePointsAPlaneALineAndMirrors) {
   Random random(37);
   BoardView view = fixturePicture(&random, 0.3);

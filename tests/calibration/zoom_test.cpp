@@ -7,11 +7,12 @@
 #include <unistd.h>
 
 #include "calibration/zoom/zoom_fit.h"
+#include "calibration/zoom/zoom_join.h"
 #include "calibration/zoom/zoom_quality.h"
 #include "core/text.h"
 #include "tests/calibration/synthetic.h"
 #include "tests/support/report_zoom_file.h"
-#include "vision/camera/zoom_camera.h"
+#include "vision/camera/zoom_doubt.h"
 
 namespace longarm::tests {
 namespace {
@@ -172,6 +173,124 @@ TEST(ZoomQuality, TurnAndPrincipalPointThatTradeOffDoNoHarm) {
     ASSERT_TRUE(at.ok());
     EXPECT_LT((vision::boresightOf(*at) - Eigen::Vector2d(320, 240.5)).norm(), 1e-9);
   }
+}
+
+// A lens of eight settings whose principal point wanders by 2 px, each calibrated by itself: the narrower, the less sure.
+struct NoisyLens {
+  std::vector<calibration::ZoomLens> truth, measured;
+};
+
+NoisyLens noisyLens(Random* random) {
+  NoisyLens out;
+  for (int k = 0; k < 8; ++k) {
+    calibration::ZoomLens lens;
+    const double f = 740 * std::pow(8.0, k / 7.0), wide = f / 740;
+    lens.node.zoom = k / 7.0;
+    lens.node.interior = {f, 0.999 * f, 0, 322 + random->normal(2), 238 + random->normal(2), -0.2, 0.1, 0, 0};
+    out.truth.push_back(lens);
+    // Focal lengths and principal point of a real board calibration are correlated.
+    Eigen::Matrix4d L = Eigen::Matrix4d::Identity();
+    L(0, 0) = L(1, 1) = 0.5 * wide * wide;
+    L(1, 0) = 0.4 * wide * wide;
+    L(2, 2) = L(3, 3) = 0.6 * wide * wide;
+    L(2, 0) = 0.3 * wide * wide;
+    L(3, 1) = -0.3 * wide * wide;
+    const Eigen::Matrix4d C = L * L.transpose();
+    Eigen::Vector4d unit;
+    for (int i = 0; i < 4; ++i) unit[i] = random->normal(1);
+    const Eigen::Vector4d error = L * unit;
+    const int index[] = {calibration::kFx, calibration::kFy, calibration::kCx, calibration::kCy};
+    for (int i = 0; i < 4; ++i) {
+      lens.node.interior[static_cast<std::size_t>(index[i])] += error[i];
+      for (int j = 0; j < 4; ++j) lens.covariance(index[i], index[j]) = C(i, j);
+    }
+    out.measured.push_back(lens);
+  }
+  return out;
+}
+
+TEST(ZoomJoin, TheOtherSettingsSayWhereThePrincipalPointOfANarrowOneIs) {
+  Random random(17);
+  double alone = 0, together = 0, focal_alone = 0, focal_together = 0, nees = 0;
+  const int runs = 400;
+  for (int run = 0; run < runs; ++run) {
+    const NoisyLens lens = noisyLens(&random);
+    const auto joined = calibration::joinZoom(lens.measured);
+    const auto off = [&](const calibration::ZoomLens& l, std::size_t i) { return l.node.interior[i] - lens.truth.back().node.interior[i]; };
+    const auto& before = lens.measured.back();
+    const auto& after = joined.lenses.back();
+    alone += std::pow(off(before, 3), 2) / runs;
+    together += std::pow(off(after, 3), 2) / runs;
+    focal_alone += std::pow(off(before, 0), 2) / runs;
+    focal_together += std::pow(off(after, 0), 2) / runs;
+    nees += std::pow(off(after, 3), 2) / after.covariance(3, 3) / runs;
+  }
+  EXPECT_GT(std::sqrt(alone), 30) << "the board hardly says it";
+  EXPECT_LT(std::sqrt(together), 3.2);
+  EXPECT_LT(focal_together, 0.95 * focal_alone) << "what is correlated gains with it";
+  EXPECT_GT(nees, 0.35) << "wander is taken as 3 px and was 2";
+  EXPECT_LT(nees, 1.1);
+}
+
+TEST(ZoomJoin, WhatIsKnownStaysAndWhatIsOddIsTold) {
+  Random random(4);
+  auto lens = noisyLens(&random);
+  auto certain = lens.truth;
+  for (auto& l : certain) l.covariance.setZero();
+  const auto same = calibration::joinZoom(certain);
+  for (std::size_t k = 0; k < certain.size(); ++k) EXPECT_EQ(same.lenses[k].node.interior, certain[k].node.interior);
+  EXPECT_TRUE(same.warnings.empty());
+  lens.measured[0].node.interior[3] += 60;                 // wide, so that its own board is sure of it
+  const auto joined = calibration::joinZoom(lens.measured);
+  ASSERT_FALSE(joined.warnings.empty());
+  EXPECT_NE(joined.warnings.front().find("zoom 0:"), std::string::npos) << joined.warnings.front();
+  EXPECT_EQ(calibration::joinZoom({lens.measured[0]}).lenses[0].node.interior, lens.measured[0].node.interior) << "nothing to join";
+}
+
+TEST(ZoomDoubt, IsWhatNoisySettingsAreWrong) {
+  Random random(23);
+  double focal = 0, boresight = 0;
+  const int runs = 500;
+  for (int run = 0; run < runs; ++run) {
+    ZoomCamera truth{"true", {}}, table{"noisy", {}};
+    for (int k = 0; k < 9; ++k) {
+      ZoomNode node;
+      node.zoom = k / 8.0;
+      const double f = 740 * std::pow(8.0, node.zoom);
+      node.interior = {f, f, 0, 321.5, 238.5, -0.2, 0.1, 0, 0};
+      truth.nodes.push_back(node);
+      const double scale = 1 + random.normal(0.004);
+      node.interior[0] *= scale;
+      node.interior[1] *= scale;
+      node.interior[3] += random.normal(1.5) * f / 740;    // a turn of the axis: magnified as everything else
+      table.nodes.push_back(node);
+    }
+    const double zoom = 0.43;
+    const auto at = vision::zoomAt(table, zoom);
+    ASSERT_TRUE(at.ok());
+    const auto C = vision::lensDoubt(vision::predictFromOthers(table), *at);
+    ASSERT_TRUE(C.has_value());
+    const double f = 740 * std::pow(8.0, zoom);
+    focal += std::pow(at->interior[0] - f, 2) / (*C)(0, 0) / runs;
+    boresight += std::pow(at->interior[3] - 321.5, 2) / (*C)(3, 3) / runs;
+    EXPECT_NEAR((*C)(0, 1) / std::sqrt((*C)(0, 0) * (*C)(1, 1)), 1, 1e-9) << "both focal lengths grow together";
+  }
+  // Between settings the error is smaller than at them; a variance from three misses varies by itself.
+  EXPECT_GT(focal, 0.4);
+  EXPECT_LT(focal, 3);
+  EXPECT_GT(boresight, 0.4);
+  EXPECT_LT(boresight, 3);
+}
+
+TEST(ZoomDoubt, NeedsThreeSettingsAndLeavesNominalOnesOut) {
+  auto camera = measuredOnly();
+  camera.nodes.resize(2);
+  EXPECT_FALSE(vision::lensDoubt(vision::predictFromOthers(camera), camera.nodes[0]).has_value());
+  const auto whole = report().cameras.front();
+  const auto all = vision::predictFromOthers(whole);
+  const auto doubt = vision::lensDoubt(all, whole.nodes.back());
+  ASSERT_TRUE(doubt.has_value());
+  EXPECT_LT(std::sqrt((*doubt)(0, 0)) / whole.nodes.back().interior[0], 0.02) << "a nominal node in the middle would say more";
 }
 
 // A folder of its own for one test.

@@ -42,6 +42,17 @@ TEST(ScenarioRoute, TheBuiltInBoardVisitsEnoughPlaces) {
   EXPECT_FALSE(board->body.collides) << "whoever holds it keeps it out of the arm's way";
 }
 
+TEST(ScenarioRoute, SomethingIsHeldBeforeACamera) {
+  const auto scenario = parseScenario(scenarioWith("before: ptz_left, route: [{pose: {xyz: [0, 0, 1]}}]"), "s.yaml");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_EQ(scenario->objects.front().before, "ptz_left");
+  for (const char* name : {"calibration_zoom", "calibration_fixture"}) {
+    const auto built_in = loadScenario(name);
+    ASSERT_TRUE(built_in.ok()) << built_in.error().message;
+    EXPECT_FALSE(built_in->objects.front().before.empty());
+  }
+}
+
 const char kStage[] = "format: 1\nname: s\ntitle: t\nobjects:\n"
     "  - {name: bar, shape: {cylinder: {radius: 0.01, length: 0.2}}, pose: {xyz: [1, 0, 1]}}\n"
     "  - {name: lid, shape: {box: [0.2, 0.2, 0.02]}, pose: {xyz: [1, 0, 1]}}\n"

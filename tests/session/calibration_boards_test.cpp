@@ -57,6 +57,25 @@ TEST(BoardCollection, RefusesAPictureOfAnotherSizeAndSaysWhatIsMissing) {
   EXPECT_NE(boards.whyNotReady().find("at least 3"), std::string::npos) << boards.whyNotReady();
 }
 
+TEST(BoardCollection, OnlyPicturesOfTheNewestZoomBelongToOneLens) {
+  BoardCollection boards;
+  const auto add = [&](std::optional<double> zoom) {
+    ASSERT_TRUE(boards.add({"board", cv::Mat(480, 640, CV_8U), boardAt(100, 100), "", true, zoom}).ok());
+  };
+  for (int i = 0; i < 3; ++i) add(0.2);
+  EXPECT_EQ(boards.usable().size(), 3U);
+  add(0.4);
+  EXPECT_EQ(boards.usable(), std::vector<std::size_t>{3}) << "the lens was turned";
+  EXPECT_EQ(boards.zoom(), 0.4);
+  add(0.401);
+  EXPECT_EQ(boards.usable().size(), 2U) << "the drive trembles";
+  boards.setIncluded(3, false);
+  boards.setIncluded(4, false);
+  EXPECT_EQ(boards.usable().size(), 3U) << "back to the setting before";
+  add(std::nullopt);
+  EXPECT_EQ(boards.usable(), std::vector<std::size_t>{5}) << "a lens that does not zoom is another one";
+}
+
 class Intrinsics : public longarm::testing::EventLoopTest {
  protected:
   void settle(const IntrinsicsController& wizard) {
@@ -121,6 +140,31 @@ TEST_F(Intrinsics, ABoardHeldStillBeforeALiveCameraIsKept) {
   EXPECT_EQ(wizard.boards().pictures().size(), 2U) << "by hand all the same";
   wizard.leaveLive();
   EXPECT_FALSE(wizard.whyNotCapture().isEmpty());
+}
+
+TEST_F(Intrinsics, APlaceOfTheBoardIsNewThroughAnotherZoom) {
+  LONGARM_SKIP_WITHOUT_DATA();
+  IntrinsicsController wizard(jobs);
+  const cv::Mat picture = vision::loadImage(tests::dataFolder() + "/opencv_stereo_chess/left01.jpg").value();
+  int shown = 0;
+  QObject::connect(&wizard, &IntrinsicsController::liveChanged, [&shown] { ++shown; });
+  const auto show = [&](int first, double zoom) {
+    for (int i = first; i < first + 4; ++i) {
+      wizard.offerLive(picture, 0.3 * i, zoom);
+      ASSERT_TRUE(waitFor([&] { return shown == i + 1; }));
+    }
+  };
+  show(0, 0.0);
+  ASSERT_EQ(wizard.boards().pictures().size(), 1U);
+  wizard.leaveLive();                              // meanwhile another page is looked at
+  ASSERT_TRUE(waitFor([&] { return shown == 5; }));
+  shown = 4;
+  show(4, 0.5);
+  ASSERT_EQ(wizard.boards().pictures().size(), 2U) << "the same place, seen through another lens";
+  EXPECT_EQ(wizard.boards().pictures()[0].zoom, 0.0);
+  EXPECT_EQ(wizard.boards().pictures()[1].zoom, 0.5);
+  show(8, 0.0);
+  EXPECT_EQ(wizard.boards().pictures().size(), 2U) << "back at a setting where it was seen";
 }
 
 TEST_F(Intrinsics, AFileThatIsNoPictureIsToldAndTheOthersGoOn) {

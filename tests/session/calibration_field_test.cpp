@@ -374,8 +374,8 @@ TEST_F(Field, AZoomTableIsJudgedAndSaysWhereItLacksACalibration) {
   EXPECT_EQ(zoom.table().nodes.size(), 8U);
   EXPECT_EQ(zoom.misses().size(), 6U);
   EXPECT_FALSE(zoom.advised().empty());
-  EXPECT_FALSE(zoom.whyNotAddLens(0.5).isEmpty()) << "no board was calibrated";
-  EXPECT_FALSE(zoom.whyNotAddLens(1.5).isEmpty());
+  EXPECT_FALSE(zoom.whyNotAddLens("ptz_left", 0.5).isEmpty()) << "no board was calibrated";
+  EXPECT_FALSE(zoom.whyNotAddLens("ptz_left", 1.5).isEmpty());
   const QString again = folder.filePath("again.xml");
   zoom.save(again);
   EXPECT_EQ(vision::readZoomFile(again.toStdString())->cameras.front().nodes.size(), 8U);

@@ -7,6 +7,11 @@
 #include "core/text.h"
 
 namespace longarm::vision {
+namespace {
+
+constexpr Eigen::Index kPixels = 5;                // fx fy skew cx cy: the first numbers of a camera file's covariance
+
+}  // namespace
 
 CameraModel enlarged(const CameraModel& camera, double factor) {
   LONGARM_REQUIRE(factor > 0 && camera.width > 0 && camera.height > 0, "an enlargement needs a factor and a picture's size");
@@ -36,6 +41,7 @@ Result<CameraCalibration> CameraCalibration::read(const std::string& path, const
   if (!table || table->cameras.empty()) return file.error();
   if (table->cameras.front().nodes.empty()) return Error{ErrorCode::kInvalidInput, path + ": has no <SR_zoom> setting"};
   out.m_table = table->cameras.front();
+  out.m_predictions = predictFromOthers(*out.m_table);
   return out;
 }
 
@@ -65,6 +71,7 @@ Result<CameraFile> CameraCalibration::tableAt(double setting) const {
   if (file) {
     file->camera.width = m_width;
     file->camera.height = m_height;
+    file->covariance = lensDoubt(m_predictions, *node);
   }
   return file;
 }
@@ -79,7 +86,13 @@ Result<CameraFile> CameraCalibration::at(std::optional<double> setting) const {
   if (zoom > 1) return outside(zoom);
   auto file = m_file ? Result<CameraFile>(*m_file) : tableAt(digital ? m_digital.from : zoom);
   if (!file || !digital || file->camera.width <= 0) return file;
-  file->camera = enlarged(file->camera, std::pow(m_digital.factor, (zoom - m_digital.from) / (1 - m_digital.from)));
+  const double factor = std::pow(m_digital.factor, (zoom - m_digital.from) / (1 - m_digital.from));
+  file->camera = enlarged(file->camera, factor);
+  // Focal lengths, skew and principal point are in pixels; distortion is not.
+  if (file->covariance) {
+    file->covariance->topRows<kPixels>() *= factor;
+    file->covariance->leftCols<kPixels>() *= factor;
+  }
   return file;
 }
 

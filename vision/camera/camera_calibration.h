@@ -7,7 +7,7 @@
 #include <string>
 
 #include "vision/camera/camera_file.h"
-#include "vision/camera/zoom_camera.h"
+#include "vision/camera/zoom_doubt.h"
 
 namespace longarm::vision {
 
@@ -38,7 +38,8 @@ class CameraCalibration {
   /// Enlargement at a setting against the lowest calibrated one; empty outside the table.
   std::optional<double> magnification(double setting) const;
 
-  /// The camera at a setting of its zoom.  Of a table the pose is the optical frame in "<name>_mount".
+  /// The camera at a setting of its zoom.  Of a table the pose is the optical frame in "<name>_mount",
+  /// and the covariance is what the table leaves open (lensDoubt), where it has three settings or more.
   /// @returns kNotFound: a table, and no setting is given; kOutOfLimits: a setting that is not calibrated.
   Result<CameraFile> at(std::optional<double> setting) const;
 
@@ -51,6 +52,7 @@ class CameraCalibration {
   int m_width = 0, m_height = 0;
   std::optional<CameraFile> m_file;      // one of the two
   std::optional<ZoomCamera> m_table;
+  std::vector<ZoomPrediction> m_predictions;
 };
 
 }  // namespace longarm::vision

@@ -1,5 +1,6 @@
 #include "widgets/scene/procedural_surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -101,6 +102,15 @@ cv::Vec3d chessboard(double x, double y) {
   return grey(inside && (column + row) % 2 == 0 ? 25 : 235);
 }
 
+// 8 x 8 dots: dark discs in the middles of squares of 40 mm, 12 mm across, with soft edges.
+cv::Vec3d dots(double x, double y) {
+  constexpr int kCount = 8;
+  constexpr double kRadius = 0.15, kEdge = 0.75 * kCount / kSize;     // in squares
+  const double across = x * kCount - std::floor(x * kCount) - 0.5, up = y * kCount - std::floor(y * kCount) - 0.5;
+  const double outside = std::clamp((std::hypot(across, up) - kRadius) / kEdge + 0.5, 0.0, 1.0);
+  return grey(25 + 210 * outside);
+}
+
 struct Recipe {
   cv::Vec3d (*shader)(double, double);
   double tile_m;
@@ -112,7 +122,7 @@ Surface makeSurface(const std::string& name) {
   static const std::map<std::string, Recipe> kRecipes = {
       {"wood", {wood, 0.6}},       {"concrete", {concrete, 1.5}}, {"metal", {metal, 0.25}},
       {"checker", {checker, 0.4}}, {"carton", {carton, 0.3}},     {"noise", {noise, 0.25}},
-      {"chessboard", {chessboard, 0.03 * kSize / 40}}};
+      {"chessboard", {chessboard, 0.03 * kSize / 40}}, {"dots", {dots, 8 * 0.04}}};
   const auto found = kRecipes.find(name);
   if (found == kRecipes.end()) return {};
   return {shade(found->second.shader), found->second.tile_m};

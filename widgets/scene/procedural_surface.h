@@ -14,7 +14,8 @@ struct Surface {
   double tile_m = 1;             ///< Edge of one tile [m].
 };
 
-/// "wood", "concrete", "metal", "checker", "carton", "noise", "chessboard" (squares of 30 mm).  Pure function.
+/// "wood", "concrete", "metal", "checker", "carton", "noise", "chessboard" (squares of 30 mm), "dots" (of 12 mm,
+/// 40 mm apart).  Pure function.
 Surface makeSurface(const std::string& name);
 
 }  // namespace longarm::scene::internal
