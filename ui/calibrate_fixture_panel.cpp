@@ -203,7 +203,7 @@ void CalibrateFixturePanel::refresh() {
     const auto values = calibration::lensVector(result->camera);
     QStringList numbers;
     for (const int i : result->estimated.indices()) {
-      const int decimals = i < calibration::kK1 ? 2 : 4;
+      const int decimals = i < calibration::kK1 ? 2 : 5;
       numbers << tr("%1 %2\u00b1%3").arg(QString::fromLatin1(calibration::lensParameterName(i)), QString::number(values[i], 'f', decimals),
                                         QString::number(std::sqrt(std::max(0.0, result->covariance(i, i))), 'f', decimals));
     }

@@ -33,6 +33,19 @@ constexpr double kDepth_m = 1;             // Of the millimetres that are told.
 QString px(double value, int decimals = 3) { return QString::number(value, 'f', decimals); }
 QString zoomText(const std::optional<double>& zoom) { return zoom ? QString::number(*zoom, 'f', 3) : CalibrateIntrinsicsPanel::tr("not known"); }
 
+// "cy -0.84"
+QString strongestCorrelation(const calibration::IntrinsicsResult& result, int of) {
+  QString text;
+  double strongest = 0;
+  for (const int i : result.estimated.indices()) {
+    const double scale = std::sqrt(result.covariance(of, of) * result.covariance(i, i));
+    if (i == of || scale <= 0 || std::abs(result.covariance(of, i)) <= strongest * scale) continue;
+    strongest = std::abs(result.covariance(of, i)) / scale;
+    text = QStringLiteral("%1 %2").arg(QString::fromLatin1(calibration::lensParameterName(i)), QString::number(result.covariance(of, i) / scale, 'f', 2));
+  }
+  return text;
+}
+
 }  // namespace
 
 CalibrateIntrinsicsPanel::CalibrateIntrinsicsPanel(Workbench& bench, Appearance& appearance, QWidget* parent) : QWidget(parent), m_bench(bench) {
@@ -114,7 +127,8 @@ QWidget* CalibrateIntrinsicsPanel::buildResultStep(Appearance& appearance) {
   row->addWidget(m_distortion, 1);
   row->addWidget(m_skew);
   column->addLayout(row);
-  m_parameters = plainTable({tr("Parameter"), tr("Value"), tr("\u00b1 1 sigma")}, page);
+  m_parameters = plainTable({tr("Parameter"), tr("Value"), tr("\u00b1 1 sigma"), tr("Goes with")}, page);
+  m_parameters->horizontalHeaderItem(3)->setToolTip(tr("The parameter that it is most strongly correlated with: near \u00b11 the pictures do not tell the two apart"));
   column->addWidget(m_parameters, 1);
   m_summary = wordLabel(page);
   column->addWidget(m_summary);
@@ -291,6 +305,7 @@ void CalibrateIntrinsicsPanel::refreshResult() {
       setCell(m_parameters, row, 0, QString::fromLatin1(calibration::lensParameterName(i)));
       setCell(m_parameters, row, 1, px(values[i], decimals));
       setCell(m_parameters, row, 2, px(std::sqrt(std::max(0.0, result.covariance(i, i))), decimals));
+      setCell(m_parameters, row, 3, strongestCorrelation(result, i));
     }
     QStringList lines;
     if (outcome->zoom) lines << tr("At zoom %1: add it to the camera's table on the page Zoom.").arg(zoomText(outcome->zoom));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDateTime>
 #include <QDoubleSpinBox>
@@ -78,9 +79,11 @@ QWidget* CalibratePosePanel::buildWhatStep() {
   m_unknown->addItem(tr("the camera on its mount (T_ext)"), static_cast<int>(PoseController::Unknown::kExt));
   m_unknown->addItem(tr("the pan-tilt's foot (T_dev)"), static_cast<int>(PoseController::Unknown::kDev));
   m_unknown->addItem(tr("an object (T_obj)"), static_cast<int>(PoseController::Unknown::kObj));
+  m_camera_too = new QCheckBox(tr("nor how the camera is mounted"), page);
   m_object = new QComboBox(page);
   form->addRow(tr("Camera"), m_camera);
   form->addRow(tr("Not known is"), m_unknown);
+  form->addRow(QString(), m_camera_too);
   form->addRow(tr("Object"), m_object);
   column->addLayout(form);
   column->addWidget(new QLabel(tr("Choose a corner, then click it in the picture:"), page));
@@ -161,6 +164,7 @@ void CalibratePosePanel::bind() {
       box->setValue(0);
     }
   });
+  connect(m_camera_too, &QCheckBox::toggled, this, [this](bool on) { model().setCameraToo(on); });
   connect(m_object, qOverload<int>(&QComboBox::currentIndexChanged), this, [this] { model().setObject(m_object->currentText()); });
   connect(m_snapshot, qOverload<int>(&QComboBox::activated), this, [this](int index) {
     model().setSnapshot(SnapshotId{m_snapshot->itemData(index).toULongLong()});
@@ -265,6 +269,8 @@ void CalibratePosePanel::refresh() {
   m_landmarks->setCurrentRow(model().landmark());
   m_filling = false;
   setWhyNot(m_object, model().unknown() == PoseController::Unknown::kObj ? QString() : tr("only an object's place needs it."), tr("Which object of the workcell"));
+  setWhyNot(m_camera_too, model().unknown() == PoseController::Unknown::kExt ? tr("it is what is found already.") : QString(),
+            tr("Both are found together (hand-eye): click the same things in pictures at three or more angles of the pan-tilt, or poses of the arm, turned about two axes"));
   const auto shown = model().snapshot();
   if (shown) {
     m_canvas->setCamera(shown->view.camera);
@@ -366,9 +372,14 @@ void CalibratePosePanel::refreshMarks(const Eigen::VectorXd& q) {
 
 void CalibratePosePanel::apply() {
   if (!m_apply->isEnabled()) return;
-  const Status applied = model().unknown() == PoseController::Unknown::kExt
-                             ? m_bench.calibration().apply(model().change())
-                             : m_bench.calibration().apply(model().placeChange());
+  // Both are taken from the one answer before the first is used, which begins another.
+  std::optional<session::CameraChange> camera;
+  std::optional<session::PlaceChange> place;
+  if (model().unknown() == PoseController::Unknown::kExt || model().cameraToo()) camera = model().change();
+  if (model().unknown() != PoseController::Unknown::kExt) place = model().placeChange();
+  Status applied;
+  if (place) applied = m_bench.calibration().apply(*place);
+  if (applied && camera) applied = m_bench.calibration().apply(*camera);
   if (!applied) m_bench.say(QString::fromStdString(applied.error().message));
 }
 

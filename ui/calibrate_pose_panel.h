@@ -15,6 +15,7 @@
 #include "widgets/hold_button.h"
 #include "widgets/image_canvas.h"
 
+class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
@@ -38,6 +39,7 @@ class CalibratePosePanel final : public QWidget {
   widgets::ImageCanvas* canvas() const { return m_canvas; }
   QComboBox* camera() const { return m_camera; }
   QComboBox* unknown() const { return m_unknown; }
+  QCheckBox* cameraToo() const { return m_camera_too; }
   QComboBox* object() const { return m_object; }
   widgets::SceneView* scene() const { return m_scene; }
   QTableWidget* points() const { return m_points; }
@@ -81,6 +83,7 @@ class CalibratePosePanel final : public QWidget {
   std::unique_ptr<scene::WorldRep> m_marks;        // Clicked points and the chosen one.
   QTabWidget* m_steps;
   QComboBox *m_camera, *m_unknown, *m_object, *m_snapshot;
+  QCheckBox* m_camera_too;
   QListWidget* m_landmarks;
   std::array<QDoubleSpinBox*, 6> m_guess;
   QTableWidget* m_points;

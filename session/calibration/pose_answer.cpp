@@ -13,7 +13,6 @@ using calibration::PoseObservation;
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-constexpr double kClick_px = 0.7;
 constexpr int kClicks = 6;                 // that an operator makes in one more picture
 constexpr double kPanStep_rad = 15 / kDegrees, kTiltStep_rad = 12 / kDegrees, kPanMost_rad = 75 / kDegrees;
 constexpr double kLowest_m = 0.1;          // a gripper is not sent nearer to the ground
@@ -59,7 +58,7 @@ std::vector<PoseObservation> PoseController::observed() const {
 std::vector<PoseObservation> PoseController::seenFrom(const Eigen::VectorXd& q) const {
   std::vector<PoseObservation> out;
   for (const auto& mark : m_landmarks) {
-    if (const auto o = observationAt(mark, q)) out.push_back(*o);
+    if (const auto o = observationAt(mark, q, extNow(m_X_LC.inverse()))) out.push_back(*o);
   }
   return out;
 }
@@ -128,7 +127,7 @@ void PoseController::offerGripper(std::vector<PictureOffer>* offers) const {
 void PoseController::advisePicture() {
   m_next_picture.clear();
   const auto shown = snapshot();
-  if (!m_outcome || !shown || spec() == nullptr) return;
+  if (!m_outcome || !shown || spec() == nullptr || cameraToo()) return;
   std::vector<PictureOffer> offers;
   if (!spec()->pan_tilt.empty()) offerAngles(&offers);
   else if (isCarriedByArm()) offerPoses(&offers);
@@ -167,7 +166,9 @@ QString PoseController::whyNotApply() const {
 
 QString PoseController::whyWorse() const {
   if (!whyNotApply().isEmpty()) return {};
-  return m_unknown == Unknown::kExt ? m_calibration.whyWorse(change()) : m_calibration.whyWorse(placeChange());
+  const QString place = m_unknown == Unknown::kExt ? QString() : m_calibration.whyWorse(placeChange());
+  const QString camera = m_unknown == Unknown::kExt || cameraToo() ? m_calibration.whyWorse(change()) : QString();
+  return QStringList{place, camera}.join(QLatin1Char('\n')).trimmed();
 }
 
 CameraChange PoseController::change() const {
@@ -178,7 +179,8 @@ CameraChange PoseController::change() const {
   change.X_LC = result.T[0].inverse();
   if (const auto from = m_document.snapshot(m_picks.front().snapshot)) change.zoom = from->view.zoom;
   const Matrix6d J = calibration::inverseIncrement(result.T[0]);
-  change.pose_covariance = J * result.covariance.topLeftCorner<6, 6>() * J.transpose();
+  const Eigen::Index at = m_unknown == Unknown::kExt ? 0 : 6;      // in the order of the unknowns
+  change.pose_covariance = J * result.covariance.block<6, 6>(at, at) * J.transpose();
   change.rms_px = result.rms_px;
   for (const auto& o : result.observations) change.observations += o.used ? 1 : 0;
   change.raw = rawText();
@@ -245,7 +247,13 @@ std::string PoseController::rawText() const {
       const auto point = view && pick.snapshot == from->id ? loopPoint(pick.landmark, *from) : std::nullopt;
       if (point) view->points.push_back({*point, pick.pixel, pick.landmark.sigma_m});
     }
-    if (view && !view->points.empty()) problem.views.push_back(*view);
+    if (!view || view->points.empty()) continue;
+    if (cameraToo()) {                     // each of the two is found again with the other as it was found
+      view->T_ext = m_outcome->result.T[0];
+      if (m_unknown == Unknown::kDev) view->T_dev = m_outcome->result.T[1];
+      else view->T_obj = m_outcome->result.T[2];
+    }
+    problem.views.push_back(*view);
   }
   return observationsText(problem, kClick_px);
 }
@@ -271,6 +279,12 @@ QString PoseController::resultText() const {
                         .arg(QString::number(result.rms_px, 'f', 2), QString::number(result.observations.size()), QString::number(turn, 'f', 3),
                              QString::number(shift, 'f', 2)),
                     tr("Least certain: %1.").arg(QString::fromStdString(result.weakest))};
+  if (cameraToo()) {
+    const Matrix6d E = result.covariance.block<6, 6>(6, 6);
+    lines.insert(1, tr("Camera in link %1: %2; sure to %3\u00b0 and %4 mm.")
+                        .arg(QString::fromStdString(spec()->link), QString::fromStdString(poseText(result.T[0].inverse())),
+                             QString::number(kDegrees * std::sqrt(E.topLeftCorner<3, 3>().trace()), 'f', 3), QString::number(1000 * std::sqrt(E.bottomRightCorner<3, 3>().trace()), 'f', 2)));
+  }
   for (const auto& warning : result.warnings) lines << QString::fromStdString(warning);
   if (!m_next_picture.isEmpty()) lines << m_next_picture;
   return lines.join(QLatin1Char('\n'));

@@ -16,6 +16,7 @@ constexpr double kSameZoom = 1e-3;
 constexpr double kArrow = 10, kChord_px = 30;
 constexpr double kSamePlace_m = 0.001;
 constexpr std::size_t kLeast = 3;
+constexpr calibration::KinPrior kRobot{0.05 * 3.14159265358979323846 / 180, 0.0005};
 
 void add(vision::Overlay* overlay, OverlayShape::Kind kind, OverlayRole role, std::vector<Eigen::Vector2d> points, std::string text = {}) {
   overlay->shapes.push_back({kind, role, std::move(points), std::move(text)});
@@ -98,6 +99,12 @@ void PoseController::setUnknown(Unknown unknown) {
   m_picks.clear();
   m_guess.setZero();
   refreshLandmarks();
+  restart();
+}
+
+void PoseController::setCameraToo(bool too) {
+  if (too == m_camera_too) return;
+  m_camera_too = too;
   restart();
 }
 
@@ -252,24 +259,24 @@ Pose PoseController::inUse() const {
   return Pose::Identity();   // T_dev: a correction of the foot, in the root
 }
 
+Pose PoseController::extNow(const Pose& in_use) const { return cameraToo() && m_outcome ? m_outcome->result.T[0] : in_use; }
+
 Pose PoseController::inUseAt(const vision::Snapshot& snapshot) const {
   return m_unknown == Unknown::kExt ? mountAt(&snapshot).inverse() : inUse();
 }
 
 std::optional<calibration::LoopView> PoseController::loopView(const vision::Snapshot& snapshot) const {
-  auto view = loopViewAt(configuration(snapshot), std::to_string(snapshot.id.value));
-  if (view) view->T_ext = mountAt(&snapshot).inverse();
-  return view;
+  return loopViewAt(configuration(snapshot), std::to_string(snapshot.id.value), mountAt(&snapshot).inverse());
 }
 
-std::optional<calibration::LoopView> PoseController::loopViewAt(const Eigen::VectorXd& q, const std::string& name) const {
+std::optional<calibration::LoopView> PoseController::loopViewAt(const Eigen::VectorXd& q, const std::string& name, const Pose& T_ext) const {
   const auto& model = *m_document.workcell()->model;
   const auto link = model.linkIndex(spec()->link);
   if (!link) return std::nullopt;
   const Pose X_WL = model.forward(q, *link);
   calibration::LoopView view;
   view.name = name;
-  view.T_ext = m_X_LC.inverse();
+  view.T_ext = T_ext;
   view.T_kin = X_WL.inverse();
   if (m_unknown == Unknown::kObj && objectSpec() != nullptr) {
     view.T_obj = objectSpec()->X_WO.inverse();
@@ -289,11 +296,11 @@ std::optional<Eigen::Vector3d> PoseController::loopPoint(const Landmark& landmar
 }
 
 std::optional<calibration::PoseObservation> PoseController::observation(const Landmark& landmark, const vision::Snapshot& snapshot) const {
-  return observationAt(landmark, configuration(snapshot));
+  return observationAt(landmark, configuration(snapshot), extNow(m_X_LC.inverse()));
 }
 
-std::optional<calibration::PoseObservation> PoseController::observationAt(const Landmark& landmark, const Eigen::VectorXd& q) const {
-  auto view = loopViewAt(q, {});
+std::optional<calibration::PoseObservation> PoseController::observationAt(const Landmark& landmark, const Eigen::VectorXd& q, const Pose& T_ext) const {
+  auto view = loopViewAt(q, {}, T_ext);
   const auto point = m_unknown == Unknown::kObj ? Result<Eigen::Vector3d>(landmark.xyz) : landmark.inRoot(*m_document.workcell()->model, q);
   if (!view || !point) return std::nullopt;
   view->points.push_back({*point, {0, 0}, 0});
@@ -306,6 +313,13 @@ std::optional<Eigen::Vector2d> PoseController::projected(const Landmark& landmar
   const auto o = observation(landmark, snapshot);
   if (!o) return std::nullopt;
   const auto pixel = snapshot.view.camera.project(o->A * unknown * o->y);
+  return pixel ? std::optional<Eigen::Vector2d>(*pixel) : std::nullopt;
+}
+
+std::optional<Eigen::Vector2d> PoseController::projectedInUse(const Landmark& landmark, const vision::Snapshot& snapshot) const {
+  const auto o = observationAt(landmark, configuration(snapshot), m_X_LC.inverse());
+  if (!o) return std::nullopt;
+  const auto pixel = snapshot.view.camera.project(o->A * inUseAt(snapshot) * o->y);
   return pixel ? std::optional<Eigen::Vector2d>(*pixel) : std::nullopt;
 }
 
@@ -356,7 +370,7 @@ std::optional<vision::View> PoseController::viewNow() const {
   vision::View view = shown->view;
   const auto loop = loopView(*shown);
   if (!loop) return view;
-  const Pose T_ext = m_unknown == Unknown::kExt ? estimate() : loop->T_ext;
+  const Pose T_ext = m_unknown == Unknown::kExt ? estimate() : extNow(loop->T_ext);
   const Pose T_dev = m_unknown == Unknown::kDev ? estimate() : Pose::Identity();
   view.X_WC = (T_ext * loop->T_kin * T_dev).inverse();
   return view;
@@ -383,7 +397,7 @@ std::vector<Eigen::Vector2d> PoseController::offsetsInUse() const {
   for (const auto& pick : m_picks) {
     const auto from = m_document.snapshot(pick.snapshot);
     if (!from || (record && from->wall_time_s < record->wall_time_s)) continue;
-    const auto at = projected(pick.landmark, *from, inUseAt(*from));
+    const auto at = projectedInUse(pick.landmark, *from);
     if (at) out.push_back(pick.pixel - *at);
   }
   return out;
@@ -394,7 +408,7 @@ std::optional<double> PoseController::missInUse() const {
   int count = 0;
   for (const auto& pick : m_picks) {
     const auto from = m_document.snapshot(pick.snapshot);
-    const auto at = from ? projected(pick.landmark, *from, inUseAt(*from)) : std::nullopt;
+    const auto at = from ? projectedInUse(pick.landmark, *from) : std::nullopt;
     if (!at) continue;
     sum += (pick.pixel - *at).squaredNorm() / 2;
     ++count;
@@ -479,6 +493,13 @@ void PoseController::solve() {
   const Pose start = estimate();
   options.starts[m_unknown == Unknown::kExt ? 0 : m_unknown == Unknown::kDev ? 1 : 2] = m_unknown == Unknown::kObj ? Pose(start.inverse()) : start;
   options.chosen = m_chosen;
+  if (cameraToo()) {
+    options.unknowns.push_back(Unknown::kExt);
+    options.starts[0] = m_X_LC.inverse();
+    // Between pictures the robot moved, and what it says of that is not exact.
+    options.kin_prior = kRobot;
+    options.sigma_px = kClick_px;
+  }
   m_solving = true;
   m_jobs.run<PoseOutcome>(
       this,

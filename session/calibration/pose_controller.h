@@ -49,6 +49,10 @@ class PoseController final : public QObject {
   const std::string& camera() const { return m_camera; }
   void setUnknown(Unknown unknown);
   Unknown unknown() const { return m_unknown; }
+  /// The camera on its mount is not known either: both are found together, from pictures at several angles of the pan-tilt
+  /// or poses of the arm.  For T_dev and T_obj; T_ext stands alone.
+  void setCameraToo(bool too);
+  bool cameraToo() const { return m_camera_too && m_unknown != Unknown::kExt; }
   /// Of the workcell, for T_obj.
   void setObject(const QString& object);
   const std::string& object() const { return m_object; }
@@ -102,7 +106,7 @@ class PoseController final : public QObject {
   QString nextPicture() const { return m_next_picture; }
 
   QString whyNotApply() const;
-  /// T_ext: what to give to CalibrationController::apply.  @pre whyNotApply() is empty
+  /// T_ext, alone or too: what to give to CalibrationController::apply.  @pre whyNotApply() is empty
   CameraChange change() const;
   /// T_dev, T_obj: the same for what is no camera.  @pre whyNotApply() is empty
   PlaceChange placeChange() const;
@@ -112,6 +116,8 @@ class PoseController final : public QObject {
   Pose solvedObjectPose() const;
   /// The solved transform in numbers as files write them.
   QString resultText() const;
+
+  static constexpr double kClick_px = 0.7;       ///< 1 sigma of a hand, per axis.
 
  Q_SIGNALS:
   void changed();                          ///< Clicks, outcome, choices.
@@ -142,11 +148,13 @@ class PoseController final : public QObject {
   /// The link that carries the pan-tilt, in the root; empty when it moved between the pictures.
   std::optional<Pose> footOfPanTilt() const;
   void refreshMount();
+  /// T_ext as it stands: solved together with another, else as in use.
+  Pose extNow(const Pose& in_use) const;
   Pose mountAt(const vision::Snapshot* snapshot) const;    // the camera in its link, as in use at the picture's zoom
   Pose inUseAt(const vision::Snapshot& snapshot) const;
   bool severalZooms() const;               // among the pictures that are clicked in
-  std::optional<calibration::LoopView> loopViewAt(const Eigen::VectorXd& q, const std::string& name) const;
-  std::optional<calibration::PoseObservation> observationAt(const Landmark& landmark, const Eigen::VectorXd& q) const;
+  std::optional<calibration::LoopView> loopViewAt(const Eigen::VectorXd& q, const std::string& name, const Pose& T_ext) const;
+  std::optional<calibration::PoseObservation> observationAt(const Landmark& landmark, const Eigen::VectorXd& q, const Pose& T_ext) const;
   std::string rawText() const;
   Eigen::VectorXd configurationNow() const;
   Pose inUse() const;
@@ -155,6 +163,7 @@ class PoseController final : public QObject {
   /// Landmark in the frame that the loop begins with.
   std::optional<Eigen::Vector3d> loopPoint(const Landmark& landmark, const vision::Snapshot& snapshot) const;
   std::optional<Eigen::Vector2d> projected(const Landmark& landmark, const vision::Snapshot& snapshot, const Pose& unknown) const;
+  std::optional<Eigen::Vector2d> projectedInUse(const Landmark& landmark, const vision::Snapshot& snapshot) const;
   std::optional<calibration::PoseObservation> observation(const Landmark& landmark, const vision::Snapshot& snapshot) const;
   Eigen::VectorXd configuration(const vision::Snapshot& snapshot) const;
   const planning::CameraSpec* spec() const;
@@ -167,6 +176,7 @@ class PoseController final : public QObject {
   int m_observer = 0;
   std::string m_camera, m_object;
   Unknown m_unknown = Unknown::kExt;
+  bool m_camera_too = false;
   KnownGeometry m_geometry;
   Pose m_X_LC = Pose::Identity();          // the camera in its link, as in use
   std::vector<Landmark> m_landmarks, m_stuck;

@@ -234,6 +234,82 @@ TEST_F(Field, TheFootOfAPanTiltIsPutRightKeptAndGoneBackFrom) {
   EXPECT_NEAR(squares.mean() / runs, 1, 0.5) << "stated against true errors, per component";
 }
 
+TEST_F(Field, ACameraAndAnObjectThatNobodyKnowsAreFoundTogether) {
+  const Pose own = document.workcell()->objects.front().X_WO;
+  const Pose X_WO = own * tests::poseOf({0.02, -0.03, 0.06}, {0.04, -0.03, 0.02});
+  const Pose X_LC = tests::poseOf({1.1 * kDegree, -0.8 * kDegree, 0.6 * kDegree}, {0.006, -0.005, 0.004});
+  const auto& model = *plain->model;
+  const int link = model.linkIndex("head_left_optical").value();
+  Random random(91);
+  PoseController pose(document, calibration, jobs);
+  pose.setCamera("head_left");
+  pose.setUnknown(LoopUnknown::kObj);
+  pose.setObject("crate");
+  pose.setCameraToo(true);
+  ASSERT_TRUE(pose.cameraToo());
+  const std::pair<double, double> angles[] = {{-0.35, 0.1}, {0.0, 0.45}, {0.3, 0.2}, {-0.15, 0.5}, {0.2, -0.05}};
+  for (const auto& [pan, tilt] : angles) {
+    JointState state = arm(0, -0.15, 2.15);
+    state.names.insert(state.names.end(), {"head_pan_joint", "head_tilt_joint"});
+    state.positions.conservativeResize(6);
+    state.positions.tail<2>() << pan, tilt;
+    state.velocities = Eigen::VectorXd::Zero(6);
+    const SnapshotId id = addSnapshot("head_left", state);
+    pose.setSnapshot(id);
+    const auto snapshot = document.snapshot(id);
+    Eigen::VectorXd q = model.neutral();
+    model.assign(state, q);
+    const Pose X_WC = model.forward(q, link) * X_LC;
+    for (std::size_t i = 0; i < pose.landmarks().size(); ++i) {
+      const auto pixel = snapshot->view.camera.project(X_WC.inverse() * X_WO * pose.landmarks()[i].xyz);
+      if (!pixel || !snapshot->view.camera.containsPixel(*pixel, -3)) continue;
+      pose.setLandmark(static_cast<int>(i));
+      pose.pick(*pixel + Eigen::Vector2d(random.normal(0.5), random.normal(0.5)));
+    }
+  }
+  ASSERT_GE(pose.picks().size(), 24U);
+  ASSERT_TRUE(solved(pose));
+  ASSERT_TRUE(pose.outcome().has_value()) << pose.why().toStdString();
+  ASSERT_TRUE(pose.whyNotApply().isEmpty()) << pose.whyNotApply().toStdString();
+  EXPECT_GT(*pose.missInUse(), 10) << "with what is in use";
+  EXPECT_LT(pose.outcome()->result.rms_px, 1);
+  const CameraChange camera = pose.change();
+  const PlaceChange place = pose.placeChange();
+  const auto off = [](const Pose& found, const Pose& truth) {
+    Vector6d error;
+    error << logSO3(found.linear() * truth.linear().transpose()), found.translation() - truth.translation();
+    return error;
+  };
+  const Vector6d e_camera = off(*camera.X_LC, X_LC), e_object = off(place.placement.pose.pose, X_WO);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(std::abs(e_camera[i]), 3.5 * std::sqrt(camera.pose_covariance(i, i))) << "camera " << i;
+    EXPECT_LT(std::abs(e_object[i]), 3.5 * std::sqrt(place.placement.covariance(i, i))) << "object " << i;
+  }
+  EXPECT_LT(e_camera.head<3>().norm() / kDegree, 0.4);
+  EXPECT_LT(e_object.tail<3>().norm(), 0.015);
+  EXPECT_TRUE(pose.resultText().contains("Camera in link")) << pose.resultText().toStdString();
+  // What is drawn lies on the picture with both as found.
+  const auto view = pose.viewNow();
+  ASSERT_TRUE(view.has_value());
+  const auto corner = view->project(place.placement.pose.pose * pose.picks().back().landmark.xyz);
+  ASSERT_TRUE(corner.ok());
+  EXPECT_LT((*corner - pose.picks().back().pixel).norm(), 3);
+  ASSERT_TRUE(calibration.apply(place).ok());
+  ASSERT_TRUE(calibration.apply(camera).ok());
+  EXPECT_TRUE(document.workcell()->objects.front().X_WO.isApprox(place.placement.pose.pose, 1e-9));
+  EXPECT_TRUE(calibration.fileInUse("head_left")->pose->pose.isApprox(*camera.X_LC, 1e-9));
+  // One angle alone cannot tell the two apart.
+  PoseController still(document, calibration, jobs);
+  still.setCamera("head_left");
+  still.setUnknown(LoopUnknown::kObj);
+  still.setObject("crate");
+  still.setCameraToo(true);
+  clickAll(&still, document, still.snapshots().front()->id, document.snapshot(still.snapshots().front()->id)->view.X_WC, &random, 7);
+  ASSERT_TRUE(solved(still));
+  EXPECT_FALSE(still.outcome().has_value());
+  EXPECT_FALSE(still.why().isEmpty());
+}
+
 TEST_F(Field, APoseLessCertainThanTheOneInUseIsSaidToBe) {
   CameraChange change;
   change.camera = "drive";

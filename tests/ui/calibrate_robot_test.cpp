@@ -278,7 +278,8 @@ TEST_F(CalibrateWithRobot, AZoomLensIsWalkedThroughUntilItsTableIsGood) {
     calibrateAtZoom(camera, end);
     if (HasFatalFailure()) return;
   }
-  for (int round = 0; round < 7 && !wizard.advised().empty(); ++round) {
+  for (int round = 0; round < 4 && wizard.light() == calibration::TrafficLight::kRed; ++round) {
+    ASSERT_FALSE(wizard.advised().empty());
     calibrateAtZoom(camera, wizard.advised().front());
     if (HasFatalFailure()) return;
     std::printf("%s\n", panel->advice().toStdString().c_str());

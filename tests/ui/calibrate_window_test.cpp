@@ -124,7 +124,8 @@ TEST_F(CalibrateWindow, RealPicturesOfABoardGiveALensThatTheCameraThenUses) {
   window->resize(1920, 1080);
   look(QStringLiteral("calibrate-coverage-1920"));
   panel->show(CalibrateIntrinsicsPanel::Show::kPicture);
-  EXPECT_GE(panel->parameters()->rowCount(), 6);
+  ASSERT_GE(panel->parameters()->rowCount(), 6);
+  EXPECT_TRUE(panel->parameters()->item(0, 3)->text().startsWith(QStringLiteral("fy"))) << "focal lengths grow together: " << panel->parameters()->item(0, 3)->text().toStdString();
   panel->target()->setCurrentIndex(panel->target()->findData(QStringLiteral("drive")));
   ASSERT_TRUE(panel->applyButton()->isEnabled()) << panel->applyButton()->toolTip().toStdString();
   const double before = bench->calibration().fileInUse("drive")->camera.cx;
@@ -291,6 +292,7 @@ TEST_F(CalibrateWindow, EveryPageSaysWhatToDoAndWhyAButtonIsGrey) {
     SimulatedHand::pump(100);
     EXPECT_TRUE(panel->isVisible()) << name;
     EXPECT_LE(panel->width(), window->width()) << name;
+    EXPECT_LE(panel->height(), panel->parentWidget()->height()) << name << " must be scrolled, though the window is as large as promised";
     for (const auto* button : panel->findChildren<QPushButton*>()) {
       if (!button->isVisible() || button->isEnabled()) continue;
       EXPECT_TRUE(button->toolTip().contains(QStringLiteral("Not now"))) << name << ": " << button->text().toStdString();
