@@ -28,7 +28,11 @@ ZoomController::ZoomController(CalibrationController& calibration, JobRunner& jo
 
 void ZoomController::take(ZoomCamera table, std::vector<std::string> warnings) {
   m_lenses.clear();
-  for (const auto& node : table.nodes) m_lenses.push_back({node, {}});
+  for (const auto& node : table.nodes) {
+    ZoomLens lens;
+    lens.node = node;
+    m_lenses.push_back(lens);
+  }
   m_table = std::move(table);
   m_file_warnings = std::move(warnings);
   judge();

@@ -378,7 +378,9 @@ TEST_F(Field, AZoomTableIsJudgedAndSaysWhereItLacksACalibration) {
   EXPECT_FALSE(zoom.whyNotAddLens("ptz_left", 1.5).isEmpty());
   const QString again = folder.filePath("again.xml");
   zoom.save(again);
-  EXPECT_EQ(vision::readZoomFile(again.toStdString())->cameras.front().nodes.size(), 8U);
+  const auto reread = vision::readZoomFile(again.toStdString());
+  ASSERT_TRUE(reread.ok()) << reread.error().message;
+  EXPECT_EQ(reread->cameras.front().nodes.size(), 8U);
   zoom.removeNode(0);
   EXPECT_EQ(zoom.table().nodes.size(), 7U);
   EXPECT_EQ(ZoomController::approach(0.5).size(), 2U);
