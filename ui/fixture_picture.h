@@ -21,7 +21,7 @@ class FixturePicture final : public QWidget {
   explicit FixturePicture(Appearance& appearance, QWidget* parent = nullptr);
   void setFixture(const calibration::Fixture& fixture);
   void setMarks(int chosen, const std::set<std::size_t>& placed);
-  QSize sizeHint() const override { return {300, 210}; }
+  QSize sizeHint() const override { return {300, 150}; }
   QPointF placeOf(std::size_t point) const;
 
  Q_SIGNALS:
