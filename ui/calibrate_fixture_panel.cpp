@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kArrow = 40;              // Misses are drawn so many times their size.
 constexpr double kPickRadius = 10;         // [screen px]
-constexpr int kColumnWidth = 350;
+constexpr int kColumnWidth = 350, kLeastTable = 90;
 
 }  // namespace
 
@@ -52,6 +52,8 @@ QWidget* CalibrateFixturePanel::buildSide(Appearance& appearance) {
   m_fixture = new FixturePicture(appearance, side);
   column->addWidget(m_fixture, 1);
   m_points = plainTable({tr("Point"), tr("x y z m"), tr("Miss px"), tr("Placed")}, side);
+  m_points->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);       // a long answer below takes of it
+  m_points->setMinimumHeight(kLeastTable);
   column->addWidget(m_points, 1);
   auto* row = new QHBoxLayout;
   m_match = new QPushButton(tr("Match the rest"), side);

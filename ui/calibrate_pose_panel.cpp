@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kPickRadius = 12;         // [screen px]
-constexpr int kColumnWidth = 340;
+constexpr int kColumnWidth = 340, kLeastList = 70;
 constexpr double kMark_m = 0.007;
 
 }  // namespace
@@ -88,6 +88,8 @@ QWidget* CalibratePosePanel::buildWhatStep() {
   column->addLayout(form);
   column->addWidget(new QLabel(tr("Choose a corner, then click it in the picture:"), page));
   m_landmarks = new QListWidget(page);
+  m_landmarks->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);    // a long answer below takes of it
+  m_landmarks->setMinimumHeight(kLeastList);
   column->addWidget(m_landmarks, 1);
   column->addWidget(new QLabel(tr("Your own guess (turn in \u00b0, shift in mm):"), page));
   auto* grid = new QGridLayout;

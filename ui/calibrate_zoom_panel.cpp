@@ -85,7 +85,10 @@ QWidget* CalibrateZoomPanel::buildSteps(Appearance& appearance) {
 }
 
 void CalibrateZoomPanel::bind() {
-  connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, &CalibrateZoomPanel::refresh);
+  connect(m_camera, qOverload<int>(&QComboBox::currentIndexChanged), this, [this] {
+    if (isVisible()) m_bench.live().setWatched({m_camera->currentData().toString()});
+    refresh();
+  });
   connect(m_setting, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &CalibrateZoomPanel::refresh);
   connect(m_advised, &QPushButton::clicked, this, [this] {
     if (!model().advised().empty()) m_setting->setValue(model().advised().front());
@@ -120,7 +123,13 @@ QString CalibrateZoomPanel::advice() const { return m_advice->text(); }
 void CalibrateZoomPanel::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   fillCameras(m_camera, m_bench.document().workcell().get());
+  m_bench.live().setWatched({m_camera->currentData().toString()});
   refresh();
+}
+
+void CalibrateZoomPanel::hideEvent(QHideEvent* event) {
+  m_bench.live().setWatched({});
+  QWidget::hideEvent(event);
 }
 
 QString CalibrateZoomPanel::whyNotGo() const {

@@ -36,6 +36,7 @@ class CalibrateZoomPanel final : public QWidget {
 
  protected:
   void showEvent(QShowEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
 
  private:
   QWidget* buildSteps(Appearance& appearance);
