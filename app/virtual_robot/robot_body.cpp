@@ -71,14 +71,14 @@ Pose knock(const std::string& camera, unsigned seed) {
   return out;
 }
 
+}  // namespace
+
 std::string usualCamera(const planning::Workcell& workcell) {
   for (const auto& camera : workcell.cameras) {
     if (camera.role == "stereo_left") return camera.name;
   }
   return workcell.cameras.empty() ? std::string() : workcell.cameras.front().name;
 }
-
-}  // namespace
 
 Result<std::unique_ptr<RobotBody>> RobotBody::create(const planning::Workcell& workcell,
                                                      const planning::Scenario& scenario, unsigned seed) {

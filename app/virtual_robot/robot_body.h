@@ -31,6 +31,9 @@
 
 namespace longarm::virtual_robot {
 
+/// The camera that a fault strikes where it names none: the left one of a pair, else the first; empty: there is none.
+std::string usualCamera(const planning::Workcell& workcell);
+
 struct GoalState {
   planning::ScenarioGoal goal;
   bool reached = false;

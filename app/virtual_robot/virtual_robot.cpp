@@ -24,13 +24,6 @@ double distanceAhead(const Pose& X_WC, const std::vector<planning::WorldObject>&
   return nearest;
 }
 
-std::string usualCamera(const planning::Workcell& workcell) {
-  for (const auto& camera : workcell.cameras) {
-    if (camera.role == "stereo_left") return camera.name;
-  }
-  return workcell.cameras.empty() ? std::string() : workcell.cameras.front().name;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<VirtualRobot>> VirtualRobot::create(const RobotOptions& options, RobotOutlets outlets) {

@@ -100,6 +100,13 @@ Result<vision::CameraFile> CalibrationController::fileInUse(const std::string& c
   return file;
 }
 
+Pose CalibrationController::mountInUse(const std::string& camera, std::optional<double> zoom) const {
+  auto file = fileInUse(camera, zoom);
+  if (!file && zoom) file = fileInUse(camera, 0);
+  if (!file || !file->pose || file->pose->parent != m_document.workcell()->camera(camera)->link) return Pose::Identity();
+  return file->pose->pose;
+}
+
 bool CalibrationController::hasTable(const std::string& camera) const {
   const auto* spec = m_document.workcell() ? m_document.workcell()->camera(camera) : nullptr;
   if (spec == nullptr) return false;

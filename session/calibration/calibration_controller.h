@@ -38,6 +38,9 @@ class CalibrationController final : public QObject {
   /// @param zoom  Setting, for a camera with a table; its pose is then in the camera's link.
   /// @returns kNotFound (no such camera; a table and no setting), or as CameraCalibration::read and at.
   Result<vision::CameraFile> fileInUse(const std::string& camera, std::optional<double> zoom = {}) const;
+  /// The optical frame in the camera's link by the calibration in use; identity where that does not say, or says it of another
+  /// frame.  Outside the settings of a table: of its wide end.
+  Pose mountInUse(const std::string& camera, std::optional<double> zoom = {}) const;
   /// The record in use; empty: the workcell's own file is.
   std::optional<CalibrationRecord> recordInUse(const std::string& camera) const;
   /// The camera file that a change would give.  @returns kInvalidInput: the picture's size differs; as fileInUse.

@@ -138,8 +138,7 @@ bool PoseController::hangsOnPanTilt(const std::string& link) const {
 }
 
 Pose PoseController::mountAt(const vision::Snapshot* snapshot) const {
-  const auto file = m_calibration.fileInUse(m_camera, snapshot != nullptr ? snapshot->view.zoom : std::nullopt);
-  return file && spec() != nullptr && file->pose && file->pose->parent == spec()->link ? file->pose->pose : Pose::Identity();
+  return m_calibration.mountInUse(m_camera, snapshot != nullptr ? snapshot->view.zoom : std::nullopt);
 }
 
 void PoseController::refreshMount() { m_X_LC = mountAt(snapshot().get()); }

@@ -304,11 +304,7 @@ std::optional<Pose> StereoController::pairInUse() const {
   const auto between = betweenLinks();
   const auto left = lens(0), right = lens(1);
   if (!between || !left || !right) return std::nullopt;
-  const auto mount = [&](const vision::CameraFile& file, std::size_t side) {
-    const auto& link = m_document.workcell()->camera(m_cameras[side])->link;
-    return file.pose && file.pose->parent == link ? file.pose->pose : Pose::Identity();
-  };
-  return Pose(mount(*left, 0).inverse() * *between * mount(*right, 1));
+  return Pose(m_calibration.mountInUse(m_cameras[0]).inverse() * *between * m_calibration.mountInUse(m_cameras[1]));
 }
 
 QString StereoController::whyNotSave() const {

@@ -77,12 +77,6 @@ QString ZoomController::whyNotAddLens(const std::string& camera, double zoom) co
   return {};
 }
 
-Pose ZoomController::mountInUse(const std::string& camera, double zoom) const {
-  auto file = m_calibration.fileInUse(camera, zoom);
-  if (!file) file = m_calibration.fileInUse(camera, 0);
-  return file && file->pose ? file->pose->pose : Pose::Identity();
-}
-
 void ZoomController::addLens(const std::string& camera, double zoom) {
   if (const QString why = whyNotAddLens(camera, zoom); !why.isEmpty()) {
     Q_EMIT failed(why);
@@ -100,7 +94,7 @@ void ZoomController::addLens(const std::string& camera, double zoom) {
   ZoomNode& node = added.node;
   node.zoom = zoom;
   node.interior = {lens.fx, lens.fy, lens.skew, lens.cx, lens.cy, lens.distortion[0], lens.distortion[1], lens.distortion[2], lens.distortion[3]};
-  const Pose C_ext = mountInUse(camera, zoom).inverse();
+  const Pose C_ext = m_calibration.mountInUse(camera, zoom).inverse();
   const Eigen::Vector3d turn = logSO3(C_ext.linear());
   node.exterior = {C_ext.translation().x(), C_ext.translation().y(), C_ext.translation().z(), turn.x(), turn.y(), turn.z()};
   m_lenses.erase(std::remove_if(m_lenses.begin(), m_lenses.end(), [zoom](const ZoomLens& l) { return std::abs(l.node.zoom - zoom) < kSameSetting; }), m_lenses.end());

@@ -61,7 +61,6 @@ class ZoomController final : public QObject {
 
  private:
   void take(vision::ZoomCamera table, std::vector<std::string> warnings);
-  Pose mountInUse(const std::string& camera, double zoom) const;
   void judge();
   vision::ZoomFile file(const std::string& name) const;
 

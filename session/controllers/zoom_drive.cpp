@@ -43,9 +43,7 @@ QString ZoomDrive::whyNot(const QString& camera) const {
 }
 
 std::optional<double> ZoomDrive::zoom(const QString& camera) const {
-  if (m_feed == nullptr) return {};
-  const auto zoom = m_feed->zoomAt(camera.toStdString(), m_feed->now_s());
-  return zoom ? *zoom : std::nullopt;
+  return m_feed == nullptr ? std::nullopt : zoomAt(camera, m_feed->now_s());
 }
 
 std::optional<double> ZoomDrive::zoomAt(const QString& camera, double stamp_s) const {

@@ -4,7 +4,9 @@
 // LONGARM_UI_PICTURES=FOLDER keeps a picture of each plan, for docs/macros.md.
 #include <QDoubleSpinBox>
 
+#include "planning/macros/recorded_motion.h"
 #include "tests/ui/played_window.h"
+#include "ui/recorded_panel.h"
 
 namespace longarm {
 namespace {
@@ -158,6 +160,57 @@ TEST_F(TypedPoseWindow, TakesTheToolThere) {
   if (!HasFatalFailure()) finish();
   if (HasFatalFailure()) return;
   EXPECT_LT((toolNow() - wanted).norm(), 5e-3) << "the correction was 1 mm at the most";
+  EXPECT_TRUE(contacts().empty()) << judge().dump();
+}
+
+// To a pose that the workcell names, and once more along the way that was recorded.
+class NamedMotionWindow : public tests::PlayedWindow {
+ protected:
+  void playThrough(const QString& macro, const QString& picture) {
+    planIt(macro, {});
+    if (!HasFatalFailure()) preview(picture);
+    if (!HasFatalFailure()) playAndCorrect();
+  }
+  // How far the arm is from a named pose, in the joint that is furthest off [rad].
+  double offPose(const std::string& name) const {
+    const auto state = bench->robot().runtime()->jointState();
+    double most = 0;
+    for (const auto& [joint, wanted] : bench->document().workcell()->poses.at(name)) {
+      const auto at = std::find(state->names.begin(), state->names.end(), joint);
+      if (at != state->names.end()) most = std::max(most, std::abs(state->positions[at - state->names.begin()] - wanted));
+    }
+    return most;
+  }
+};
+
+TEST_F(NamedMotionWindow, ACannedMotionIsPlayedRecordedAndReplayed) {
+  openScenario("crate");
+  if (HasFatalFailure()) return;
+  demand(op->resetStop());
+  demand(op->openGripper());
+  ASSERT_GT(offPose("ready"), 0.2);
+  playThrough(QStringLiteral("ready"), QStringLiteral("canned"));
+  if (HasFatalFailure()) return;
+  window->findChild<QDockWidget*>(QStringLiteral("recorded"))->raise();
+  auto* panel = window->findChild<ui::RecordedPanel*>();
+  ui::SimulatedHand::pump(100);
+  ASSERT_TRUE(panel->recordButton()->isEnabled()) << panel->recordButton()->toolTip().toStdString();
+  hand.click(panel->recordButton());
+  finish();
+  if (HasFatalFailure()) return;
+  EXPECT_LT(offPose("ready"), 0.02) << "the correction was a millimetre or a degree, and the way led back";
+  hand.click(panel->recordButton());
+  ASSERT_EQ(bench->recorder().motions().size(), 1U) << whyNot();
+  const auto& motion = bench->recorder().motions().front();
+  EXPECT_GE(motion.waypoints.size(), 2U);
+  planIt(QStringLiteral("stow"), {});
+  if (!HasFatalFailure()) finish();
+  if (HasFatalFailure()) return;
+  EXPECT_LT(offPose("stow"), 0.02);
+  playThrough(QString::fromStdString(planning::macroName(motion)), QStringLiteral("recorded"));
+  if (!HasFatalFailure()) finish();
+  if (HasFatalFailure()) return;
+  EXPECT_LT(offPose("ready"), 0.02) << "it ends where the recording ended";
   EXPECT_TRUE(contacts().empty()) << judge().dump();
 }
 
